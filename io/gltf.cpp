@@ -2,7 +2,8 @@
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "io/base64.hpp"
+#include "io/pictures/body_surface.hpp"
 #include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
 
@@ -14,10 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <numbers>
 #include <stdexcept>
-#include <string_view>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -32,19 +30,6 @@ constexpr double most_keys = 1e8;
 
 /// The format's numbers for types of components and of data.
 constexpr int as_float = 5126, as_uint32 = 5125, as_vertices = 34962, as_indices = 34963;
-
-std::string base64(const std::vector<std::uint8_t>& bytes) {
-  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve(bytes.size() * 4 / 3 + 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t bits = 0;
-    for (std::size_t k = 0; k < 3; ++k) bits = bits << 8 | (k < here ? bytes[i + k] : 0u);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= here ? digits[bits >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 /// The parts of the document, and the bytes that they name.
 class Document {
@@ -80,7 +65,8 @@ class Document {
   }
   std::string text() {
     if (!bytes_.empty()) {
-      add("buffers", {{"byteLength", bytes_.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes_)}});
+      add("buffers",
+          {{"byteLength", bytes_.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes_)}});
     }
     return root.dump(-1, ' ', false, json::error_handler_t::replace);
   }
@@ -97,65 +83,6 @@ class Document {
 
   std::vector<std::uint8_t> bytes_;
 };
-
-void append(std::vector<float>& to, const Vector3d& v) {
-  for (int d = 0; d < 3; ++d) to.push_back(static_cast<float>(v[d]));
-}
-
-/// Triangles; normals where the surface is round.
-struct Surface {
-  std::vector<float> places, normals;
-  std::vector<std::uint32_t> triangles;
-};
-
-/// Of radius 1 about the z axis, from -half_length to half_length; a ball if that is 0.
-Surface round_surface(double half_length) {
-  constexpr int around = 24, quarter = 6;
-  Surface surface;
-  for (int ring = 0; ring < 2 * quarter + 2; ++ring) {
-    const bool upper = ring > quarter;
-    const double height = (ring - (upper ? quarter + 1 : quarter)) * std::numbers::pi / (2 * quarter);
-    for (int i = 0; i < around; ++i) {
-      const double angle = 2 * std::numbers::pi * i / around;
-      const Vector3d normal(std::cos(height) * std::cos(angle), std::cos(height) * std::sin(angle), std::sin(height));
-      append(surface.normals, normal);
-      append(surface.places, normal + Vector3d(0, 0, upper ? half_length : -half_length));
-    }
-  }
-  for (std::uint32_t ring = 0; ring < 2 * quarter + 1; ++ring) {
-    for (std::uint32_t i = 0; i < around; ++i) {
-      const std::uint32_t a = ring * around + i, b = ring * around + (i + 1) % around;
-      for (const std::uint32_t corner : {a, b, b + around, a, b + around, a + around}) surface.triangles.push_back(corner);
-    }
-  }
-  return surface;
-}
-
-Surface box_surface() {
-  Surface surface;
-  for (int d = 0; d < 3; ++d) {
-    for (const double side : {-1.0, 1.0}) {
-      const auto first = static_cast<std::uint32_t>(surface.places.size() / 3);
-      for (const auto& [u, v] : {std::pair(-1.0, -1.0), {1.0, -1.0}, {1.0, 1.0}, {-1.0, 1.0}}) {
-        Vector3d corner;
-        corner[d] = side, corner[(d + 1) % 3] = side * u, corner[(d + 2) % 3] = v;
-        append(surface.places, corner);
-        append(surface.normals, side * Vector3d::Unit(d));
-      }
-      for (const std::uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) surface.triangles.push_back(first + k);
-    }
-  }
-  return surface;
-}
-
-Surface mesh_surface(const kds::collision::Mesh& mesh) {
-  Surface surface;
-  for (const Vector3d& v : mesh.vertices()) append(surface.places, v);
-  for (const auto& triangle : mesh.triangles()) {
-    surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
-  }
-  return surface;
-}
 
 /// What an animation changes of one body: keys.
 struct Keys {
@@ -193,15 +120,13 @@ class Exporter {
 
   void check_length() const {
     const double keys = length() * rate_ * static_cast<double>(scene_.bodies.size());
-    if (keys > most_keys) throw std::length_error("glTF: more than a hundred million keys: ask for fewer frames a second");
+    if (keys > most_keys)
+      throw std::length_error("glTF: more than a hundred million keys: ask for fewer frames a second");
   }
 
   void add_body(std::uint32_t place) {
     const SceneBody& body = scene_.bodies[place];
-    const bool round = std::holds_alternative<kds::collision::Capsule>(body.shape);
-    Vector3d scale = kds::collision::measures(body.shape);
-    if (round) scale = Vector3d::Constant(scale[0]);
-    if (std::holds_alternative<kds::collision::BendingMesh>(body.shape)) scale = Vector3d::Ones();
+    const Vector3d scale = surface_scale(body.shape);
     const auto pieces = record_.drawn(scene_, place);
     const Eigen::Quaterniond& q = body.orientation;
     json node = {{"name", body.name},
@@ -277,16 +202,9 @@ class Exporter {
     if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
       return add_bending(*bending->script, material(colour, colours));
     }
-    const auto* const capsule = std::get_if<kds::collision::Capsule>(&body.shape);
-    const auto* const hull = std::get_if<kds::collision::ConvexHull>(&body.shape);
-    const auto triangles = hull ? hull->polytope->surface() : kds::collision::mesh_of(body.shape);
-    const double slenderness = capsule ? capsule->half_length / capsule->radius : 0;
-    const auto key = std::tuple(body.shape.index(), static_cast<const void*>(triangles.get()), slenderness, colour);
-    const auto [known, is_new] = meshes_.try_emplace(key, 0);
+    const auto [known, is_new] = meshes_.try_emplace(std::pair(surface_key(body.shape), colour), 0);
     if (is_new) {
-      const bool is_box = std::holds_alternative<kds::collision::Box>(body.shape);
-      const Surface surface = triangles ? mesh_surface(*triangles) : is_box ? box_surface() : round_surface(slenderness);
-      known->second = add_mesh(surface, material(colour, colours), json::array());
+      known->second = add_mesh(surface_of(body.shape), material(colour, colours), json::array());
     }
     return known->second;
   }
@@ -301,16 +219,12 @@ class Exporter {
   }
 
   std::size_t add_bending(const kds::collision::MeshScript& script, std::size_t material) {
-    Surface surface;
+    const Surface surface = surface_of(script);
     const auto& base = script.keyframes()[0].positions;
-    for (const Vector3d& v : base) append(surface.places, v);
-    for (const auto& triangle : script.triangles()) {
-      surface.triangles.insert(surface.triangles.end(), triangle.begin(), triangle.end());
-    }
     json targets = json::array();
     for (std::size_t k = 1; k < script.keyframes().size(); ++k) {
       std::vector<float> moved;
-      for (std::size_t v = 0; v < base.size(); ++v) append(moved, script.keyframes()[k].positions[v] - base[v]);
+      for (std::size_t v = 0; v < base.size(); ++v) append_floats(moved, script.keyframes()[k].positions[v] - base[v]);
       targets.push_back({{"POSITION", document_.floats(moved, 3, as_vertices)}});
     }
     return add_mesh(surface, material, std::move(targets));
@@ -338,7 +252,7 @@ class Exporter {
   double rate_;
   Document document_;
   json channels_ = json::array(), samplers_ = json::array();
-  std::map<std::tuple<std::size_t, const void*, double, std::size_t>, std::size_t> meshes_;
+  std::map<std::pair<SurfaceKey, std::size_t>, std::size_t> meshes_;
   std::map<std::size_t, std::size_t> materials_;
   std::size_t body_count_ = 0;
 };

@@ -2,11 +2,9 @@
 
 #include "collision/shapes/mesh.hpp"
 #include "io/number_text.hpp"
+#include "io/polygon.hpp"
 
-#define TINYOBJLOADER_USE_DOUBLE
-#define TINYOBJLOADER_IMPLEMENTATION
 #include <assimp/scene.h>
-#include <tiny_obj_loader.h>
 
 #include <assimp/Importer.hpp>
 
@@ -33,7 +31,7 @@ std::string read_text(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-/// The first word of `line`, which loses it; empty at the end. Blanks as tinyobjloader has them.
+/// The first word of `line`, which loses it; empty at the end.
 std::string_view next_word(std::string_view& line) {
   constexpr std::string_view blanks = " \t";
   line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
@@ -64,88 +62,91 @@ Eigen::Vector3d read_obj_vertex(std::string_view words) {
   return vertex;
 }
 
-/// `words` are what follows the f of a line: corners such as 7, 7/1 and 7//1.
-void check_obj_face(std::string_view words) {
+/// `words` are what follows the f of a line: corners such as 7, 7/1, 7//1 and -2, the last vertex but one of the
+/// `vertices` that come before the line. Numbers from 0.
+std::vector<std::uint32_t> read_obj_face(std::string_view words, std::size_t vertices) {
+  std::vector<std::uint32_t> corners;
   for (std::string_view word = next_word(words); !word.empty(); word = next_word(words)) {
     int vertex = 0;
-    if (!read_number(word.substr(0, word.find('/')), vertex) || vertex == 0) {
-      throw MeshFileError('"' + std::string(word) + "\" is not the number of a vertex");
+    const bool is_number = read_number(word.substr(0, word.find('/')), vertex) && vertex != 0;
+    if (!is_number) throw MeshFileError('"' + std::string(word) + "\" is not the number of a vertex");
+    if (vertex < 0 && static_cast<std::size_t>(-static_cast<std::int64_t>(vertex)) > vertices) {
+      throw MeshFileError("a face names vertex " + std::to_string(vertex) + ", but there are " +
+                          std::to_string(vertices) + " before it");
     }
+    corners.push_back(
+        static_cast<std::uint32_t>(vertex > 0 ? vertex - 1 : static_cast<std::int64_t>(vertices) + vertex));
   }
+  if (corners.empty()) throw MeshFileError("a face has no corners");
+  return corners;
 }
 
-/// The vertices of an OBJ file. tinyobjloader rounds numbers carelessly (0.3 becomes 0.30000000000000004), and takes
-/// what is no number for 0 and 1.9 or 4294967297 for 1. So the coordinates are read here, and the faces there after
-/// their numbers are checked here.
-std::vector<Eigen::Vector3d> read_obj_vertices(std::istream& text) {
-  std::vector<Eigen::Vector3d> vertices;
-  std::string content;
-  for (std::size_t number = 1; std::getline(text, content); ++number) {
-    std::string_view line = content;
-    while (line.ends_with('\r')) line.remove_suffix(1);
+/// Hands out the lines of a text, with the number of each; they end in LF, CR or both, and one that ends in a backslash
+/// goes on in the next.
+class Lines {
+ public:
+  explicit Lines(std::string_view text) : text_(text) {
+    if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);  // a mark of UTF-8
+  }
+
+  bool next() {
+    if (text_.empty()) return false;
+    line.clear();
+    number = last_ + 1;
+    do {
+      if (line.ends_with('\\')) line.back() = ' ';
+      const std::size_t length = std::min(text_.find_first_of("\r\n"), text_.size());
+      line += text_.substr(0, length);
+      text_.remove_prefix(length);
+      if (text_.starts_with("\r\n")) text_.remove_prefix(1);
+      if (!text_.empty()) text_.remove_prefix(1);
+      ++last_;
+    } while (line.ends_with('\\') && !text_.empty());
+    return true;
+  }
+
+  std::string line;
+  std::size_t number = 0;  ///< of the first of those that it is made of
+
+ private:
+  std::string_view text_;
+  std::size_t last_ = 0;
+};
+
+/// Vertices and faces; what else there is has no meaning here.
+MeshData read_obj(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  struct Face {
+    std::size_t line;
+    std::vector<std::uint32_t> corners;
+  };
+  std::vector<Face> faces;
+  MeshData mesh;
+  const auto at_line = [](std::size_t number, const auto& read) {
     try {
-      // tinyobjloader goes on with another line there.
-      if (line.find('\r') != line.npos) throw MeshFileError("a line ends in CR alone; LF or CR LF is read");
-      const std::string_view keyword = next_word(line);
-      if (keyword == "v") vertices.push_back(read_obj_vertex(line));
-      if (keyword == "f") check_obj_face(line);
+      read();
     } catch (const MeshFileError& error) {
       throw MeshFileError("line " + std::to_string(number) + ": " + error.what());
     }
+  };
+  for (Lines lines(text); lines.next();) {
+    at_line(lines.number, [&] {
+      std::string_view rest = lines.line;
+      const std::string_view keyword = next_word(rest);
+      if (keyword == "v") mesh.vertices.push_back(read_obj_vertex(rest));
+      if (keyword == "f") faces.push_back({lines.number, read_obj_face(rest, mesh.vertices.size())});
+    });
   }
-  return vertices;
-}
-
-struct ObjFaces {
-  std::vector<std::uint32_t> corners;
-  std::size_t triangles_expected = 0;
-};
-
-/// The faces of an OBJ file, checked to be all there: tinyobjloader leaves out what it does not like.
-ObjFaces read_obj_faces(const std::string& text, std::size_t vertex_count, bool triangulate) {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warnings;
-  std::string errors;
-  std::istringstream in(text);
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warnings, &errors, &in, nullptr, triangulate)) {
-    throw MeshFileError(errors.empty() ? "is not an OBJ file" : errors.substr(0, errors.find('\n')));
-  }
-  if (warnings.find("Degenerated face") != std::string::npos) {
-    throw MeshFileError("a face has fewer than three corners");
-  }
-  ObjFaces faces;
-  std::size_t corners_expected = 0;
-  for (const auto& shape : shapes) {
-    for (const unsigned char n : shape.mesh.num_face_vertices) {
-      corners_expected += n;
-      faces.triangles_expected += static_cast<std::size_t>(n) - 2;
-    }
-    for (const auto& index : shape.mesh.indices) {
-      if (index.vertex_index < 0 || static_cast<std::size_t>(index.vertex_index) >= vertex_count) {
-        throw MeshFileError("a face names vertex " + std::to_string(index.vertex_index + 1) + ", but the file has " +
-                            std::to_string(vertex_count) + " vertices");
+  for (const Face& face : faces) {
+    at_line(face.line, [&] {
+      for (const std::uint32_t corner : face.corners) {
+        if (corner < mesh.vertices.size()) continue;
+        throw MeshFileError("a face names vertex " + std::to_string(std::uint64_t{corner} + 1) + ", but the file has " +
+                            std::to_string(mesh.vertices.size()) + " vertices");
       }
-      faces.corners.push_back(static_cast<std::uint32_t>(index.vertex_index));
-    }
-  }
-  if (corners_expected != faces.corners.size()) throw MeshFileError("a face has more than 255 corners");
-  return faces;
-}
-
-MeshData read_obj(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
-  MeshData mesh;
-  std::istringstream in(text);
-  mesh.vertices = read_obj_vertices(in);
-  const ObjFaces polygons = read_obj_faces(text, mesh.vertices.size(), false);
-  const ObjFaces faces = read_obj_faces(text, mesh.vertices.size(), true);
-  if (faces.corners.size() != 3 * polygons.triangles_expected) {
-    throw MeshFileError("a polygon cannot be cut into triangles; is it flat and without crossing edges?");
-  }
-  for (std::size_t i = 0; i < faces.corners.size(); i += 3) {
-    mesh.triangles.push_back({faces.corners[i], faces.corners[i + 1], faces.corners[i + 2]});
+      const auto triangles = cut_into_triangles(mesh.vertices, face.corners);
+      mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+    });
   }
   return mesh;
 }

@@ -22,10 +22,11 @@ struct MeshFileError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Reads .obj (tinyobjloader) or .stl (assimp, in single precision). Vertices of an OBJ file keep its order and its
-/// numbers to the last bit, polygons are cut into triangles; equal vertices of an STL file, which repeats them for
-/// every triangle, become one. Throws MeshFileError, and std::filesystem::filesystem_error for a file that cannot be
-/// looked at; whether the triangles make a sound mesh is not checked here.
+/// Reads .obj or .stl (assimp, in single precision). Vertices of an OBJ file keep its order and its numbers to the last
+/// bit, and polygons are cut into triangles (polygon.hpp); all but vertices and faces is passed over. Equal vertices of
+/// an STL file, which repeats them for every triangle, become one. Throws MeshFileError, of an OBJ file with the number
+/// of the line, and std::filesystem::filesystem_error for a file that cannot be looked at; whether the triangles make a
+/// sound mesh is not checked here.
 MeshData read_mesh_file(const std::filesystem::path& file);
 
 /// Removes the triangles that no mesh can have (collision::is_degenerate), which ordinary files contain: they have no

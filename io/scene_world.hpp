@@ -9,11 +9,12 @@
 
 namespace kds::io {
 
-/// A piece as a motion of lower degree, or of bodies that keep their orientation. Precondition: nothing is lost.
+/// A piece as a motion of another degree, or of bodies that keep their orientation. Precondition: nothing is lost.
 template <class Motion>
 Motion to_motion(const MotionPiece& piece) {
   kds::collision::PathOf<Motion> path;
-  std::copy_n(piece.path.coefficients.begin(), path.coefficients.size(), path.coefficients.begin());
+  const auto& given = piece.path.coefficients;
+  std::copy_n(given.begin(), std::min(given.size(), path.coefficients.size()), path.coefficients.begin());
   path.start = piece.path.start;
   if constexpr (kds::collision::turns<Motion>) {
     return {path, piece.orientation, piece.angular_velocity};

@@ -6,6 +6,7 @@
 #include "io/gltf.hpp"
 #include "io/replay.hpp"
 #include "io/scene_world.hpp"
+#include "io/vtk.hpp"
 
 #include <cstdint>
 #include <limits>
@@ -29,7 +30,8 @@ namespace kds::io {
 ///
 /// Motions that events change are recorded at their times. What the caller does between events - to add, remove or move
 /// bodies - is recorded by look(), which page() calls, too: call it after such changes, else they count from the next
-/// event of the body, or the next look, on. A mesh that bends is shown with the keyframes that it has when it is first seen.
+/// event of the body, or the next look, on. A mesh that bends is shown with the keyframes that it has when it is first
+/// seen.
 ///
 /// Cost: O(1) an event; look() O(n log n) for n bodies.
 template <class BodyMotionType>
@@ -76,6 +78,14 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
     scene_.end_time = world.now();
     return to_gltf(scene_, record_, title, frames_per_second);
   }
+  /// Surfaces as files (VtkSeries in vtk.hpp), of the same time.
+  void write_vtk(const World& world, const std::string& path, double frames_per_second = 60) {
+    look(world);
+    scene_.end_time = world.now();
+    VtkSeries series(path);
+    series.write(scene_, record_, frames_per_second);
+    series.commit();
+  }
   /// The data of the page.
   std::string to_json(const World& world, const std::string& title) {
     look(world);
@@ -93,18 +103,12 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
   void overlap(World& world, const PairEvent& event) override {
     relay(world, EventKind::overlap, event, &Listener::overlap);
   }
-  void rests(World& world, const PairEvent& event) override {
-    relay(world, EventKind::rest, event, &Listener::rests);
-  }
-  void wakes(World& world, const PairEvent& event) override {
-    relay(world, EventKind::wake, event, &Listener::wakes);
-  }
+  void rests(World& world, const PairEvent& event) override { relay(world, EventKind::rest, event, &Listener::rests); }
+  void wakes(World& world, const PairEvent& event) override { relay(world, EventKind::wake, event, &Listener::wakes); }
   void passes(World& world, const PairEvent& event) override {
     relay(world, EventKind::pass, event, &Listener::passes);
   }
-  void wall(World& world, const WallEvent& event) override {
-    relay(world, EventKind::wall, event, &Listener::wall);
-  }
+  void wall(World& world, const WallEvent& event) override { relay(world, EventKind::wall, event, &Listener::wall); }
   void rests_at_wall(World& world, const WallEvent& event) override {
     relay(world, EventKind::rest_at_wall, event, &Listener::rests_at_wall);
   }
@@ -143,7 +147,8 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
     see_bodies(world, event);
     const auto a = places_.find(event.a), b = places_.find(event.b);
     if (a == places_.end() || b == places_.end()) return;
-    record_.on_event({event.contact.time, kind, a->second, b->second, event.contact.point, event.contact.normal, {}, {}});
+    record_.on_event(
+        {event.contact.time, kind, a->second, b->second, event.contact.point, event.contact.normal, {}, {}});
   }
   void note(const World& world, EventKind kind, const WallEvent& event) {
     see_if_there(world, event.body);

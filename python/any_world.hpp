@@ -28,30 +28,48 @@ using kds::collision::BodyId;
 /// Category, and what it collides with.
 using BodyMasks = std::array<std::uint32_t, 3>;
 
-/// The orientation of the first piece is that of a body which keeps it.
+/// The orientation of the first piece is that of a body which keeps it, and no box function counts.
 using Description = kds::collision::BasicBodyDescription<Motion>;
 
-/// Members are those of kds::collision::BasicWorld, and of queries/, and throw what those throw. Motions that the type
-/// of the world cannot hold are refused with std::invalid_argument.
-class AnyWorld {
+/// What worlds of all types have. Members are those of kds::collision::BasicWorld, and throw what those throw. Motions
+/// that the type of the world cannot hold are refused with std::invalid_argument.
+class AnyBodies {
+ public:
+  virtual ~AnyBodies() = default;
+
+  virtual BodyId add_body(const Description& body) = 0;
+  virtual void reserve(std::size_t bodies) = 0;
+  virtual void remove_body(BodyId id) = 0;
+  /// As many pieces for each body, one body after the other; the first of each has started, and those after it are
+  /// named `then` in errors. All or none: throws before anything is changed.
+  virtual void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& pieces) = 0;
+  /// All or none, too: a value for each body.
+  virtual void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) = 0;
+
+  virtual bool step(double limit) = 0;
+  virtual bool advance_for(double budget_seconds, double t) = 0;
+
+  virtual double now() const = 0;
+  virtual std::size_t size() const = 0;
+  virtual bool contains(BodyId id) const = 0;
+  virtual Motion motion_now(BodyId id) const = 0;  ///< restarted at now()
+  virtual Motion free_motion_now(BodyId id) const = 0;
+  virtual void audit() const = 0;
+  virtual kds::Snapshot save() = 0;
+  virtual void restore(const kds::Snapshot& snapshot) = 0;
+};
+
+/// A BasicWorld of some type of motion, or a BasicParallelWorld; queries are those of queries/.
+class AnyWorld : public AnyBodies {
  public:
   using Listener = std::function<void(const EventRow&)>;
   using Filter = kds::collision::BodyFilter;
 
-  virtual ~AnyWorld() = default;
-
-  virtual BodyId add_body(const Description& body) = 0;
+  using AnyBodies::add_body;
   virtual BodyId add_body(const kds::io::SceneBody& body) = 0;
-  virtual void reserve(std::size_t bodies) = 0;
-  virtual void remove_body(BodyId id) = 0;
-  /// All or none: throws before anything is changed.
-  virtual void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) = 0;
-  /// The first piece has started; those after it are named `then` in errors.
-  virtual void update_motion(BodyId id, const std::vector<Motion>& pieces) = 0;
   virtual void append_motion(BodyId id, const std::vector<Motion>& pieces) = 0;
-  // All or none, too: a value for each body.
+  // All or none: a value for each body.
   virtual void set_masses(const std::vector<BodyId>& ids, const double* masses) = 0;
-  virtual void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) = 0;
   virtual void ignore_pair(BodyId a, BodyId b, bool ignored) = 0;
   virtual bool ignores_pair(BodyId a, BodyId b) const = 0;
   virtual void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) = 0;
@@ -59,16 +77,8 @@ class AnyWorld {
   virtual kds::collision::TimerId set_timer(double t) = 0;
   virtual bool cancel_timer(kds::collision::TimerId timer) = 0;
 
-  virtual void advance_to(double t) = 0;
-  virtual bool step(double limit) = 0;
-  virtual bool advance_for(double budget_seconds, double t) = 0;
   virtual double next_time() const = 0;
 
-  virtual double now() const = 0;
-  virtual std::size_t size() const = 0;
-  virtual bool contains(BodyId id) const = 0;
-  virtual Motion motion_now(BodyId id) const = 0;  ///< restarted at now()
-  virtual Motion free_motion_now(BodyId id) const = 0;
   virtual kds::collision::Shape shape(BodyId id) const = 0;
   virtual double mass(BodyId id) const = 0;
   virtual bool fixed(BodyId id) const = 0;
@@ -82,9 +92,6 @@ class AnyWorld {
   virtual bool resting_at_wall(BodyId a, int wall) const = 0;
   virtual kds::collision::WorldCounters counters() const = 0;
   virtual std::string_view broad_phase() const = 0;
-  virtual void audit() const = 0;
-  virtual kds::Snapshot save() = 0;
-  virtual void restore(const kds::Snapshot& snapshot) = 0;
 
   virtual std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const = 0;
   /// A ray where there is no shape.
@@ -105,9 +112,18 @@ class AnyWorld {
   virtual kds::collision::Approach closest_approach(BodyId a, BodyId b, double until) const = 0;
 };
 
-/// Of degree 1 or 2, of bodies that keep their orientation or turn. Throws std::invalid_argument for another degree,
-/// and what the world throws for its options.
-std::unique_ptr<AnyWorld> make_world(int degree, bool turning, const kds::collision::WorldOptions& options,
+/// Which type of world.
+struct WorldType {
+  int degree = 1;           ///< from 1 to 5; 1 or 2 of bodies that turn, and in domains
+  bool turning = false;     ///< whether bodies turn, or keep their orientation
+  std::size_t domains = 1;  ///< of a ParallelWorld, as in ParallelOptions; 1: a World
+
+  bool divided() const { return domains != 1; }
+};
+
+/// Throws std::invalid_argument for a type that is not there, and what the world throws for its options. A divided
+/// world is told of events, and runs, but has no step(); its listener must not call it.
+std::unique_ptr<AnyWorld> make_world(const WorldType& type, const kds::collision::WorldOptions& options,
                                      AnyWorld::Listener listener);
 
 }  // namespace kds_python

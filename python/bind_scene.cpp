@@ -23,7 +23,6 @@ namespace {
 namespace py = pybind11;
 using namespace kds_collide;
 using namespace kds::io;
-using namespace kds::io;
 
 /// Keeps the events of a run if they are wanted, bodies by their places in the scene. Lets Ctrl-C end it.
 class Gatherer final : public EventSink {
@@ -93,7 +92,7 @@ std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const
   if (scene.domain && scene.domain->walls == Walls::reflect) {
     options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
-  auto world = std::make_unique<PyWorld>(scene.degree(), scene.turning, options, gather);
+  auto world = hold_world({scene.degree(), scene.turning}, options, gather);
   for (const SceneBody& body : scene.bodies) world->world().add_body(body);
   return world;
 }

@@ -1,15 +1,7 @@
 // kds._kds.World.
 #include "collision/broad_phase/broad_phase_kind.hpp"
-#include "collision/response/inertia.hpp"
+#include "python/bind_held.hpp"
 #include "python/bindings.hpp"
-#include "python/py_shape.hpp"
-#include "python/py_world.hpp"
-
-#include <pybind11/eigen.h>
-#include <pybind11/functional.h>
-#include <pybind11/numpy.h>
-#include <pybind11/pybind11.h>
-#include <pybind11/stl.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -20,21 +12,7 @@
 namespace kds_python {
 namespace {
 
-namespace py = pybind11;
 using namespace kds::collision;
-
-// Arrays come from the Python files of the package, which have checked their shapes.
-using Doubles = py::array_t<double, py::array::c_style>;
-using Ids = py::array_t<std::uint64_t, py::array::c_style>;  // or other numbers of 64 bits
-using Masks = py::array_t<std::uint32_t, py::array::c_style>;
-
-Ids to_array(const std::vector<BodyId>& ids) { return Ids(static_cast<py::ssize_t>(ids.size()), ids.data()); }
-
-std::vector<BodyId> to_vector(const Ids& ids) { return {ids.data(), ids.data() + ids.size()}; }
-
-py::array_t<EventRow> to_array(const std::vector<EventRow>& rows) {
-  return py::array_t<EventRow>(static_cast<py::ssize_t>(rows.size()), rows.data());
-}
 
 std::array<double, 3> coordinates(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
 
@@ -43,8 +21,8 @@ std::optional<PlacedShape> placed_shape(const std::optional<PyShape>& shape, con
   return place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
 }
 
-std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const std::string& response,
-                                   const std::string& broad_phase,
+std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains, bool gather,
+                                   const std::string& response, const std::string& broad_phase,
                                    const std::optional<std::array<Eigen::Vector3d, 2>>& walls, double wall_restitution,
                                    double start_time, double window, double rate, int kdop, bool report_pairs,
                                    bool report_pieces, std::size_t threads, std::uint32_t zeno_contacts,
@@ -73,59 +51,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, bool gather, const 
   options.shortest_flight = shortest_flight;
   options.orientation_error = orientation_error;
   options.most_edits = most_edits;
-  return std::make_unique<PyWorld>(degree, turning, options, gather);
-}
-
-std::vector<Motion> to_motions(const Doubles& rows) {
-  std::vector<Motion> motions(static_cast<std::size_t>(rows.shape(0)));
-  for (std::size_t i = 0; i < motions.size(); ++i) motions[i] = to_motion(rows.data() + i * motion_length);
-  return motions;
-}
-
-constexpr std::uint8_t is_fixed = 1;
-constexpr std::uint8_t is_sensor = 2;
-
-/// Adds a body a row; all, or none: then those that were added are removed again.
-Ids add(PyWorld& self, const std::vector<PyShape>& shapes, const std::optional<Doubles>& radii, const Doubles& motions,
-        const Doubles& numbers, const Masks& masks, const py::array_t<std::uint8_t, py::array::c_style>& flags,
-        const Ids& user_data, const std::optional<Eigen::Matrix3d>& tensor, const Doubles& script) {
-  AnyWorld& world = self.to_change();
-  const auto bodies = static_cast<std::size_t>(motions.shape(0));
-  const std::vector<Motion> later = to_motions(script);
-  std::vector<BodyId> ids;
-  ids.reserve(bodies);
-  if (bodies > 1) world.reserve(world.size() + bodies);
-  try {
-    Description body;
-    for (std::size_t i = 0; i < bodies; ++i) {
-      if (radii) {
-        body.shape = Sphere{radii->data()[i]};
-      } else if (i == 0 || shapes.size() > 1) {
-        body.shape = shapes[i].shape;
-      }
-      body.motion.assign(1, to_motion(motions.data() + i * motion_length));
-      body.motion.insert(body.motion.end(), later.begin(), later.end());
-      const double* number = numbers.data() + 6 * i;
-      body.mass = number[0];
-      body.inertia = tensor ? Inertia(*tensor) : Inertia(number[1]);
-      body.restitution = number[2];
-      body.friction = number[3];
-      body.tangential_restitution = number[4];
-      body.rolling_friction = number[5];
-      std::tie(body.category, body.collides_with, body.group) =
-          std::tuple(masks.data()[3 * i], masks.data()[3 * i + 1], masks.data()[3 * i + 2]);
-      body.user_data = user_data.data()[i];
-      body.fixed = (flags.data()[i] & is_fixed) != 0;
-      body.sensor = (flags.data()[i] & is_sensor) != 0;
-      ids.push_back(world.add_body(body));
-    }
-  } catch (const std::exception& error) {
-    const std::string where = bodies > 1 ? "bodies[" + std::to_string(ids.size()) + "]: " : "";
-    for (auto id = ids.rbegin(); id != ids.rend(); ++id) world.remove_body(*id);
-    if (dynamic_cast<const std::invalid_argument*>(&error)) throw std::invalid_argument(where + error.what());
-    throw;
-  }
-  return to_array(ids);
+  return hold_world({degree, turning, domains}, options, gather);
 }
 
 /// A sensor that moves with a body.
@@ -138,17 +64,6 @@ BodyId attach(PyWorld& self, const PyShape& shape, BodyId owner, const Masks& ma
       std::tuple(masks.data()[0], masks.data()[1], masks.data()[2]);
   body.user_data = user_data;
   return self.to_change().add_body(body);
-}
-
-/// Position, velocity, acceleration, time, orientation and angular velocity of each at now.
-Doubles motions_now(PyWorld& self, const Ids& ids, bool free) {
-  AnyWorld& world = self.world();
-  Doubles rows({ids.size(), static_cast<py::ssize_t>(motion_length)});
-  double* row = rows.mutable_data();
-  for (py::ssize_t i = 0; i < ids.size(); ++i, row += motion_length) {
-    put(free ? world.free_motion_now(ids.data()[i]) : world.motion_now(ids.data()[i]), row);
-  }
-  return rows;
 }
 
 /// Categories, masks and groups.
@@ -200,26 +115,6 @@ py::dict counters(PyWorld& self) {
   d["rotation_pieces"] = c.rotation_pieces;
   d["orientation_resets"] = c.orientation_resets;
   return d;
-}
-
-/// The world of a Python object; null while it is being made.
-PyWorld* made(PyObject* object) {
-  return static_cast<PyWorld*>(reinterpret_cast<py::detail::instance*>(object)->get_value_and_holder().value_ptr());
-}
-
-/// Lets Python's garbage collector find worlds that are held by functions which they call.
-void collect_garbage(PyHeapTypeObject* heap_type) {
-  PyTypeObject& type = heap_type->ht_type;
-  type.tp_flags |= Py_TPFLAGS_HAVE_GC;
-  type.tp_traverse = [](PyObject* object, visitproc visit, void* arg) {
-    Py_VISIT(Py_TYPE(object));
-    const PyWorld* const world = made(object);
-    return world ? world->traverse(visit, arg) : 0;
-  };
-  type.tp_clear = [](PyObject* object) {
-    if (PyWorld* const world = made(object)) world->forget_functions();
-    return 0;
-  };
 }
 
 void bind_queries(py::class_<PyWorld>& world) {
@@ -283,31 +178,20 @@ void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point, from_point);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
   std::vector<std::string_view> kinds(kds::io::event_kind_names.begin(), kds::io::event_kind_names.end());
-  kinds.insert(kinds.end(), {"piece", "timer"});
+  kinds.insert(kinds.end(), {"piece", "timer", "wrap"});
   module.attr("event_kinds") = kinds;
 
-  py::class_<PyWorld> world(module, "World", py::custom_type_setup(&collect_garbage));
-  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("gather"),
-            py::arg("response"), py::arg("broad_phase"), py::arg("walls"), py::arg("wall_restitution"),
-            py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"), py::arg("report_pairs"),
-            py::arg("report_pieces"), py::arg("threads"), py::arg("zeno_contacts"), py::arg("zeno_interval"),
-            py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"));
-  world.def("add", &add);
-  world.def("remove", [](PyWorld& self, BodyId id) { self.to_change().remove_body(id); });
-  world.def("update", [](PyWorld& self, const Ids& ids, const Doubles& motions) {
-    self.to_change().update_motions(to_vector(ids), to_motions(motions));
-  });
-  world.def("update_script", [](PyWorld& self, BodyId id, const Doubles& pieces) {
-    self.to_change().update_motion(id, to_motions(pieces));
-  });
+  py::class_<PyWorld> world = bind_held<PyWorld>(module, "World");
+  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("domains"),
+            py::arg("gather"), py::arg("response"), py::arg("broad_phase"), py::arg("walls"),
+            py::arg("wall_restitution"), py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"),
+            py::arg("report_pairs"), py::arg("report_pieces"), py::arg("threads"), py::arg("zeno_contacts"),
+            py::arg("zeno_interval"), py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"));
   world.def("append", [](PyWorld& self, BodyId id, const Doubles& pieces) {
     self.to_change().append_motion(id, to_motions(pieces));
   });
   world.def("set_masses", [](PyWorld& self, const Ids& ids, const Doubles& masses) {
     self.to_change().set_masses(to_vector(ids), masses.data());
-  });
-  world.def("set_restitutions", [](PyWorld& self, const Ids& ids, const Doubles& restitutions) {
-    self.to_change().set_restitutions(to_vector(ids), restitutions.data());
   });
   world.def("set_filters", &set_filters);
   world.def("set_user_data", [](PyWorld& self, const Ids& ids, const Ids& user_data) {
@@ -315,15 +199,7 @@ void bind_world(py::module_& module) {
   });
   world.def("set_timer", [](PyWorld& self, double t) { return self.to_change().set_timer(t); });
   world.def("cancel_timer", [](PyWorld& self, TimerId timer) { return self.to_change().cancel_timer(timer); });
-  world.def("motions_now", &motions_now);
-  world.def("advance_to", &PyWorld::advance_to);
-  world.def("step", &PyWorld::step);
   world.def("next_time", [](PyWorld& self) { return self.to_change().next_time(); });
-  world.def("call_at", &PyWorld::call_at);
-  world.def("take_events", [](PyWorld& self) { return to_array(self.take_events()); });
-  world.def("now", [](PyWorld& self) { return self.world().now(); });
-  world.def("size", [](PyWorld& self) { return self.world().size(); });
-  world.def("contains", [](PyWorld& self, BodyId id) { return self.world().contains(id); });
   world.def("shape", [](PyWorld& self, BodyId id) { return PyShape{self.world().shape(id)}; });
   world.def("mass", [](PyWorld& self, BodyId id) { return self.world().mass(id); });
   world.def("fixed", [](PyWorld& self, BodyId id) { return self.world().fixed(id); });
@@ -337,16 +213,6 @@ void bind_world(py::module_& module) {
   world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });
   world.def("counters", &counters);
-  world.def("audit", [](PyWorld& self) { self.world().audit(); });
-  world.def("save", [](PyWorld& self) {
-    std::ostringstream out;
-    kds::write(out, self.world().save());
-    return py::bytes(out.str());
-  });
-  world.def("load", [](PyWorld& self, const py::bytes& bytes) {
-    std::istringstream in{std::string(bytes)};
-    self.to_change().restore(kds::read_snapshot(in));
-  });
   bind_queries(world);
 }
 

@@ -7,6 +7,7 @@ namespace kds_python {
 
 void bind_shapes(pybind11::module_& module);
 void bind_world(pybind11::module_& module);
+void bind_periodic_world(pybind11::module_& module);
 void bind_scene(pybind11::module_& module);
 void bind_structures(pybind11::module_& module);
 

@@ -11,6 +11,7 @@ PYBIND11_MODULE(_kds, module) {
                            std::to_string(KDS_VERSION_PATCH);
   kds_python::bind_shapes(module);
   kds_python::bind_world(module);
+  kds_python::bind_periodic_world(module);
   kds_python::bind_scene(module);
   kds_python::bind_structures(module);
 }

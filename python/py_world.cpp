@@ -20,53 +20,60 @@ constexpr double patience = 0.1;
 
 }  // namespace
 
-PyWorld::PyWorld(int degree, bool turning, const kds::collision::WorldOptions& options, bool gather)
-    : gather_(gather), world_(make_world(degree, turning, options, [this](const EventRow& event) { told(event); })) {}
+template <class World, class Row>
+HeldWorld<World, Row>::HeldWorld(const std::function<std::unique_ptr<World>(Listener)>& make, bool gather,
+                                 Functions functions)
+    : gather_(gather), allowed_(functions), world_(make([this](const Row& event) { told(event); })) {}
 
-AnyWorld& PyWorld::world() {
+template <class World, class Row>
+World& HeldWorld<World, Row>::world() {
   if (running_ && runner_ != std::this_thread::get_id()) {
     throw std::runtime_error("World: it is running in another thread");
   }
   return *world_;
 }
 
-AnyWorld& PyWorld::to_change() {
-  AnyWorld& changed = world();
+template <class World, class Row>
+World& HeldWorld<World, Row>::to_change() {
+  World& changed = world();
   if (asked_ > 0) throw std::runtime_error("World: it cannot be changed while a filter is at work");
   return changed;
 }
 
-void PyWorld::told(const EventRow& event) {
+template <class World, class Row>
+void HeldWorld<World, Row>::told(const Row& event) {
   if (gather_) events_.push_back(event);
-  const py::object& function = functions_[static_cast<std::size_t>(event.kind)];
-  if (function) function(py::array_t<EventRow>(1, &event));
+  const py::object& function = functions_[static_cast<std::size_t>(kind_of(event))];
+  if (function) function(py::array_t<Row>(1, &event));
 }
 
+template <class World, class Row>
 template <class Work>
-auto PyWorld::run(const Work& work) {
-  AnyWorld& world = to_change();
+auto HeldWorld<World, Row>::run(const Work& work) {
+  World& world = to_change();
   if (running_) return work(world);  // from within a function that it calls: the world refuses
   struct Running {
-    explicit Running(PyWorld& of) : of(of) {
+    explicit Running(HeldWorld& of) : of(of) {
       of.running_ = true;
       of.runner_ = std::this_thread::get_id();
     }
     ~Running() { of.running_ = false; }
-    PyWorld& of;
+    HeldWorld& of;
   } running(*this);  // ends when the GIL is held again
   if (std::any_of(functions_.begin(), functions_.end(), [](const auto& f) { return bool(f); })) return work(world);
   const py::gil_scoped_release release;
   return work(world);
 }
 
-void PyWorld::advance_to(double t) {
+template <class World, class Row>
+void HeldWorld<World, Row>::advance_to(double t) {
   const double now = world().now();
   if (!std::isfinite(t) || t < now) {
     std::ostringstream text;
     text << "advance_to: the time must be finite and not before now, which is " << now << ", and is " << t;
     throw std::invalid_argument(text.str());
   }
-  run([t](AnyWorld& world) {
+  run([t](World& world) {
     while (!world.advance_for(patience, t)) {
       const py::gil_scoped_acquire acquire;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -74,28 +81,45 @@ void PyWorld::advance_to(double t) {
   });
 }
 
-bool PyWorld::step(double limit) {
-  return run([limit](AnyWorld& world) { return world.step(limit); });
+template <class World, class Row>
+bool HeldWorld<World, Row>::step(double limit) {
+  return run([limit](World& world) { return world.step(limit); });
 }
 
-void PyWorld::call_at(std::size_t kind, py::object function) {
+template <class World, class Row>
+void HeldWorld<World, Row>::call_at(std::size_t kind, py::object function) {
   world();
+  if (allowed_ == Functions::refused && !function.is_none()) {
+    throw std::invalid_argument("on: a world in domains calls no functions; take_events() has the events");
+  }
   if (kind >= event_kinds) throw std::invalid_argument("on: there is no kind of event " + std::to_string(kind));
   functions_[kind] = function.is_none() ? py::object() : std::move(function);
 }
 
-std::vector<EventRow> PyWorld::take_events() {
+template <class World, class Row>
+std::vector<Row> HeldWorld<World, Row>::take_events() {
   world();
   return std::exchange(events_, {});
 }
 
-int PyWorld::traverse(visitproc visit, void* arg) const {
+template <class World, class Row>
+int HeldWorld<World, Row>::traverse(visitproc visit, void* arg) const {
   for (const py::object& function : functions_) Py_VISIT(function.ptr());
   return 0;
 }
 
-void PyWorld::forget_functions() {
+template <class World, class Row>
+void HeldWorld<World, Row>::forget_functions() {
   for (py::object& function : functions_) const py::object gone = std::move(function);
+}
+
+template class HeldWorld<AnyWorld, EventRow>;
+template class HeldWorld<AnyPeriodicWorld, PeriodicRow>;
+
+std::unique_ptr<PyWorld> hold_world(const WorldType& type, const kds::collision::WorldOptions& options, bool gather) {
+  return std::make_unique<PyWorld>(
+      [&](AnyWorld::Listener listener) { return make_world(type, options, std::move(listener)); }, gather,
+      type.divided() ? Functions::refused : Functions::allowed);
 }
 
 kds::collision::BroadPhaseKind broad_phase_named(const std::string& name) {

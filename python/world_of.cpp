@@ -1,3 +1,4 @@
+#include "collision/parallel/parallel_world.hpp"
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/world.hpp"
@@ -5,8 +6,13 @@
 #include "io/events.hpp"
 #include "io/scene_world.hpp"
 #include "python/any_world.hpp"
+#include "python/narrowed.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <span>
 #include <stdexcept>
+#include <type_traits>
 #include <utility>
 
 namespace kds_python {
@@ -14,12 +20,45 @@ namespace {
 
 using namespace kds::collision;
 using kds::io::EventKind;
+using Clock = std::chrono::steady_clock;
 
-/// Hands on what a world of some motion reports.
-template <class M>
-class Teller final : public BasicWorldListener<M> {
+/// Hands on events as rows.
+class Rows {
  public:
-  explicit Teller(AnyWorld::Listener listener) : listener_(std::move(listener)) {}
+  explicit Rows(AnyWorld::Listener listener) : listener_(std::move(listener)) {}
+
+ protected:
+  void tell(EventKind kind, const PairEvent& e) {
+    listener_(to_row(static_cast<std::int64_t>(kind), e.a, e.b, e.contact, e.user_data_a, e.user_data_b));
+  }
+  void tell(EventKind kind, const WallEvent& e) {
+    const auto wall = static_cast<std::uint64_t>(e.wall);
+    listener_(to_row(static_cast<std::int64_t>(kind), e.body, wall, e.contact, e.user_data));
+  }
+  void tell(EventKind kind, BodyId a, BodyId b, double t) {
+    listener_(to_row(static_cast<std::int64_t>(kind), a, b, nowhere(t)));
+  }
+  void tell(std::int64_t kind, std::uint64_t of, double t, std::uint64_t user_data) {
+    listener_(to_row(kind, of, of, nowhere(t), user_data, user_data));
+  }
+
+ private:
+  /// As in the files of the tool, point and normal are zero.
+  static Contact nowhere(double t) {
+    Contact contact;
+    contact.time = t;
+    contact.normal = Eigen::Vector3d::Zero();
+    return contact;
+  }
+
+  AnyWorld::Listener listener_;
+};
+
+/// Of a world of some motion.
+template <class M>
+class Teller final : public BasicWorldListener<M>, private Rows {
+ public:
+  using Rows::Rows;
 
   void contact(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::contact, e); }
   void separation(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::separation, e); }
@@ -34,243 +73,256 @@ class Teller final : public BasicWorldListener<M> {
   void timer(BasicWorld<M>& world, TimerId timer) override { tell(timer_kind, timer, world.now(), 0); }
   void pair_began(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_begin, a, b, t); }
   void pair_ended(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_end, a, b, t); }
-
- private:
-  void tell(EventKind kind, const PairEvent& e) {
-    listener_(to_row(static_cast<std::int64_t>(kind), e.a, e.b, e.contact, e.user_data_a, e.user_data_b));
-  }
-  void tell(EventKind kind, const WallEvent& e) {
-    const auto wall = static_cast<std::uint64_t>(e.wall);
-    listener_(to_row(static_cast<std::int64_t>(kind), e.body, wall, e.contact, e.user_data));
-  }
-  void tell(EventKind kind, BodyId a, BodyId b, double t) {
-    listener_(to_row(static_cast<std::int64_t>(kind), a, b, nowhere(t)));
-  }
-  void tell(std::int64_t kind, std::uint64_t of, double t, std::uint64_t user_data) {
-    listener_(to_row(kind, of, of, nowhere(t), user_data, user_data));
-  }
-  /// As in the files of the tool, point and normal are zero.
-  static Contact nowhere(double t) {
-    Contact contact;
-    contact.time = t;
-    contact.normal = Eigen::Vector3d::Zero();
-    return contact;
-  }
-
-  AnyWorld::Listener listener_;
 };
 
-/// A motion of a world of this type; throws where something would be lost.
-template <class M>
-M narrowed(const Motion& motion, const std::string& name) {
-  if (M::degree < 2 && !motion.path.coefficients[2].isZero(0)) {
-    throw std::invalid_argument(name + ".acceleration: must be 0 in a world of degree 1");
-  }
-  if (!turns<M> && !motion.angular_velocity.isZero(0)) {
-    throw std::invalid_argument(name + ".angular_velocity: must be 0 in a world that is not turning");
-  }
-  return kds::io::to_motion<M>(motion);
-}
+struct OutOfTime {};
 
-template <class M>
-class WorldOf final : public AnyWorld {
+/// Of a world in domains, which has no advance_for(): throws OutOfTime after an event, when its time is up.
+class TellerOfDomains final : public ParallelListener, private Rows {
  public:
-  WorldOf(const WorldOptions& options, Listener listener) : teller_(std::move(listener)), world_(options, &teller_) {}
+  using Rows::Rows;
 
-  BodyId add_body(const Description& body) override {
-    BasicBodyDescription<M> own;
-    own.shape = body.shape;
-    own.motion = narrowed_script(body.motion);
-    if constexpr (!turns<M>) {
-      if (!body.motion.empty()) own.orientation = body.motion.front().orientation;
-    }
-    own.mass = body.mass;
-    own.inertia = body.inertia;
-    own.fixed = body.fixed;
-    own.restitution = body.restitution;
-    own.friction = body.friction;
-    own.tangential_restitution = body.tangential_restitution;
-    own.rolling_friction = body.rolling_friction;
-    own.category = body.category;
-    own.collides_with = body.collides_with;
-    own.group = body.group;
-    own.attached_to = body.attached_to;
-    own.sensor = body.sensor;
-    own.user_data = body.user_data;
-    return world_.add_body(own);
+  Clock::time_point time_up = Clock::time_point::max();
+
+  void contact(const PairEvent& e) override { hand_on(EventKind::contact, e); }
+  void separation(const PairEvent& e) override { hand_on(EventKind::separation, e); }
+  void overlap(const PairEvent& e) override { hand_on(EventKind::overlap, e); }
+  void wall(const WallEvent& e) override { hand_on(EventKind::wall, e); }
+  void rests(const PairEvent& e) override { hand_on(EventKind::rest, e); }
+  void wakes(const PairEvent& e) override { hand_on(EventKind::wake, e); }
+  void rests_at_wall(const WallEvent& e) override { hand_on(EventKind::rest_at_wall, e); }
+  void wakes_at_wall(const WallEvent& e) override { hand_on(EventKind::wake_at_wall, e); }
+  void passes(const PairEvent& e) override { hand_on(EventKind::pass, e); }
+
+ private:
+  void hand_on(EventKind kind, const auto& event) {
+    tell(kind, event);
+    if (Clock::now() >= time_up) throw OutOfTime{};
   }
-  BodyId add_body(const kds::io::SceneBody& body) override { return world_.add_body(kds::io::describe<M>(body)); }
-  void reserve(std::size_t bodies) override { world_.reserve(bodies); }
-  void remove_body(BodyId id) override { world_.remove_body(id); }
+};
 
-  void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) override {
-    std::vector<M> own;
-    own.reserve(motions.size());
+template <class M, bool divided = false>
+class WorldOf final : public AnyWorld {
+  using World = std::conditional_t<divided, BasicParallelWorld<M>, BasicWorld<M>>;
+
+ public:
+  WorldOf(const WorldOptions& options, Listener listener) requires(!divided)
+      : teller_(std::move(listener)), world_(options, &teller_) {}
+  WorldOf(const WorldOptions& options, const ParallelOptions& parallel, Listener listener) requires(divided)
+      : teller_(std::move(listener)), world_(options, parallel, &teller_) {}
+
+  BodyId add_body(const Description& body) override { return whole().add_body(narrowed<M>(body)); }
+  BodyId add_body(const kds::io::SceneBody& body) override { return whole().add_body(kds::io::describe<M>(body)); }
+  void reserve(std::size_t bodies) override { whole().reserve(bodies); }
+  void remove_body(BodyId id) override { whole().remove_body(id); }
+
+  void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& pieces) override {
+    BasicWorld<M>& world = whole();
+    for (const BodyId id : ids) (void)world.mass(id);  // throws if it is not there
+    const std::vector<M> own = narrowed_scripts<M>(ids, pieces);
+    const std::size_t each = own.size() / std::max<std::size_t>(ids.size(), 1);
+    if constexpr (turns<M>) {
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const BodyId id = ids[i / each];
+        require_no_spin_of_half_space(world.shape(id).shape, own[i], "motion of body " + std::to_string(id));
+      }
+    }
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      const std::string name = "motion of body " + std::to_string(ids[i]);
-      (void)world_.mass(ids[i]);  // throws if it is not there
-      own.push_back(narrowed<M>(motions[i], name));
-      if (!in_range(own.back())) refuse_motion(own.back(), name);
-      if constexpr (turns<M>) require_no_spin_of_half_space(world_.shape(ids[i]).shape, own.back(), name);
+      if (each == 1) {
+        world.update_motion(ids[i], own[i]);
+      } else {
+        world.update_motion(ids[i], std::span(own).subspan(each * i, each));
+      }
     }
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.update_motion(ids[i], own[i]);
-  }
-
-  void update_motion(BodyId id, const std::vector<Motion>& pieces) override {
-    world_.update_motion(id, narrowed_script(pieces));
   }
   void append_motion(BodyId id, const std::vector<Motion>& pieces) override {
     std::vector<M> own;
     for (const Motion& piece : pieces) own.push_back(narrowed<M>(piece, "motion[" + std::to_string(own.size()) + "]"));
-    world_.append_motion(id, own);
+    whole().append_motion(id, own);
   }
 
   void set_masses(const std::vector<BodyId>& ids, const double* masses) override {
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      if (world_.fixed(ids[i])) {
+      if (whole().fixed(ids[i])) {
         throw std::invalid_argument("set_mass: body " + std::to_string(ids[i]) + " is fixed, and no mass counts");
       }
       require_size(masses[i], ("mass of body " + std::to_string(ids[i])).c_str());
     }
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_mass(ids[i], masses[i]);
+    for (std::size_t i = 0; i < ids.size(); ++i) whole().set_mass(ids[i], masses[i]);
   }
   void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) override {
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      (void)world_.restitution(ids[i]);  // throws if it is not there
+      (void)whole().restitution(ids[i]);  // throws if it is not there
       if (!(restitutions[i] >= 0 && restitutions[i] <= 1)) {
         throw std::invalid_argument("restitution of body " + std::to_string(ids[i]) + ": must be in [0, 1]");
       }
     }
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_restitution(ids[i], restitutions[i]);
+    for (std::size_t i = 0; i < ids.size(); ++i) whole().set_restitution(ids[i], restitutions[i]);
   }
   void set_filters(const std::vector<BodyId>& ids, const BodyMasks* masks) override {
-    for (const BodyId id : ids) (void)world_.category(id);
+    for (const BodyId id : ids) (void)whole().category(id);
     for (std::size_t i = 0; i < ids.size(); ++i) {
-      world_.set_filter(ids[i], masks[i][0], masks[i][1]);
-      world_.set_group(ids[i], masks[i][2]);
+      whole().set_filter(ids[i], masks[i][0], masks[i][1]);
+      whole().set_group(ids[i], masks[i][2]);
     }
   }
   void set_user_data(const std::vector<BodyId>& ids, const std::uint64_t* user_data) override {
-    for (const BodyId id : ids) (void)world_.user_data(id);
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.set_user_data(ids[i], user_data[i]);
+    for (const BodyId id : ids) (void)whole().user_data(id);
+    for (std::size_t i = 0; i < ids.size(); ++i) whole().set_user_data(ids[i], user_data[i]);
   }
-  TimerId set_timer(double t) override { return world_.set_timer(t); }
-  bool cancel_timer(TimerId timer) override { return world_.cancel_timer(timer); }
+  TimerId set_timer(double t) override { return whole().set_timer(t); }
+  bool cancel_timer(TimerId timer) override { return whole().cancel_timer(timer); }
 
-  void advance_to(double t) override { world_.advance_to(t); }
-  bool step(double limit) override { return world_.step(limit); }
-  bool advance_for(double budget_seconds, double t) override { return world_.advance_for(budget_seconds, t); }
-  double next_time() const override { return world_.next_time(); }
+  bool step(double limit) override {
+    if constexpr (!divided) return world_.step(limit);
+    throw std::logic_error("step: a world in domains goes by advance_to()");
+  }
+  bool advance_for(double budget_seconds, double t) override {
+    if constexpr (!divided) return world_.advance_for(budget_seconds, t);
+    if constexpr (divided) {
+      const auto budget = std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(budget_seconds));
+      teller_.time_up = Clock::now() + budget;
+      try {
+        world_.advance_to(t);
+      } catch (const OutOfTime&) {
+        return false;
+      }
+    }
+    return true;
+  }
+  double next_time() const override { return whole().next_time(); }
 
   double now() const override { return world_.now(); }
   std::size_t size() const override { return world_.size(); }
-  bool contains(BodyId id) const override { return world_.contains(id); }
-  Motion motion_now(BodyId id) const override { return widened(world_.motion(id), id); }
-  Motion free_motion_now(BodyId id) const override { return widened(world_.free_motion(id), id); }
-  Shape shape(BodyId id) const override { return world_.shape(id).shape; }
-  double mass(BodyId id) const override { return world_.mass(id); }
-  bool fixed(BodyId id) const override { return world_.fixed(id); }
-  bool sensor(BodyId id) const override { return world_.sensor(id); }
-  double restitution(BodyId id) const override { return world_.restitution(id); }
+  bool contains(BodyId id) const override { return whole().contains(id); }
+  Motion motion_now(BodyId id) const override { return now_of(whole().motion(id), id); }
+  Motion free_motion_now(BodyId id) const override { return now_of(whole().free_motion(id), id); }
+  Shape shape(BodyId id) const override { return whole().shape(id).shape; }
+  double mass(BodyId id) const override { return whole().mass(id); }
+  bool fixed(BodyId id) const override { return whole().fixed(id); }
+  bool sensor(BodyId id) const override { return whole().sensor(id); }
+  double restitution(BodyId id) const override { return whole().restitution(id); }
   BodyMasks masks(BodyId id) const override {
-    return {world_.category(id), world_.collides_with(id), world_.group(id)};
+    return {whole().category(id), whole().collides_with(id), whole().group(id)};
   }
-  void ignore_pair(BodyId a, BodyId b, bool ignored) override { world_.ignore_pair(a, b, ignored); }
-  bool ignores_pair(BodyId a, BodyId b) const override { return world_.ignores_pair(a, b); }
-  std::uint64_t user_data(BodyId id) const override { return world_.user_data(id); }
+  void ignore_pair(BodyId a, BodyId b, bool ignored) override { whole().ignore_pair(a, b, ignored); }
+  bool ignores_pair(BodyId a, BodyId b) const override { return whole().ignores_pair(a, b); }
+  std::uint64_t user_data(BodyId id) const override { return whole().user_data(id); }
   std::vector<BodyId> partners(BodyId id) const override {
     std::vector<BodyId> found;
-    world_.visit_partners(id, [&found](BodyId other) { found.push_back(other); });
+    whole().visit_partners(id, [&found](BodyId other) { found.push_back(other); });
     return found;
   }
-  bool touching(BodyId a, BodyId b) const override { return world_.touching(a, b); }
-  bool resting(BodyId a, BodyId b) const override { return world_.resting(a, b); }
-  bool resting_at_wall(BodyId a, int wall) const override { return world_.resting_at_wall(a, wall); }
-  WorldCounters counters() const override { return world_.counters(); }
+  bool touching(BodyId a, BodyId b) const override { return whole().touching(a, b); }
+  bool resting(BodyId a, BodyId b) const override { return whole().resting(a, b); }
+  bool resting_at_wall(BodyId a, int wall) const override { return whole().resting_at_wall(a, wall); }
+  WorldCounters counters() const override {
+    if constexpr (divided) return world_.work();
+    if constexpr (!divided) return world_.counters();
+  }
   std::string_view broad_phase() const override { return world_.broad_phase(); }
-  void audit() const override { world_.audit(); }
+  void audit() const override { whole().audit(); }
   kds::Snapshot save() override { return kds::save(world_); }
   void restore(const kds::Snapshot& snapshot) override { kds::restore(snapshot, world_); }
 
   std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const override {
     std::vector<BodyId> ids;
-    world_.visit_overlapping(min, max, [&ids](BodyId id) { ids.push_back(id); });
+    whole().visit_overlapping(min, max, [&ids](BodyId id) { ids.push_back(id); });
     return ids;
   }
   std::vector<Hit> cast(const std::optional<PlacedShape>& shape, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
                         bool all, const Filter& filter) const override {
     const Ray ray{from, to};
-    if (all) return shape ? cast_all(world_, *shape, ray, filter) : cast_all(world_, ray, filter);
+    if (all) return shape ? cast_all(whole(), *shape, ray, filter) : cast_all(whole(), ray, filter);
     const auto hit =
-        shape ? kds::collision::cast(world_, *shape, ray, filter) : kds::collision::cast(world_, ray, filter);
+        shape ? kds::collision::cast(whole(), *shape, ray, filter) : kds::collision::cast(whole(), ray, filter);
     return hit ? std::vector<Hit>{*hit} : std::vector<Hit>{};
   }
   std::vector<BodyId> overlapping(const PlacedShape& shape, const Eigen::Vector3d& at,
                                   const Filter& filter) const override {
-    return kds::collision::overlapping(world_, shape, at, filter);
+    return kds::collision::overlapping(whole(), shape, at, filter);
   }
   std::vector<NearBody> nearest(const std::optional<PlacedShape>& shape, const Eigen::Vector3d& to, std::size_t count,
                                 const Filter& filter) const override {
-    return shape ? kds::collision::nearest(world_, *shape, to, count, filter)
-                 : kds::collision::nearest(world_, to, count, filter);
+    return shape ? kds::collision::nearest(whole(), *shape, to, count, filter)
+                 : kds::collision::nearest(whole(), to, count, filter);
   }
   ShapeDistance distance_between(BodyId a, BodyId b) const override {
-    return kds::collision::distance_between(world_, a, b);
+    return kds::collision::distance_between(whole(), a, b);
   }
   std::optional<Hit> next_contact(const Shape& shape, const Motion& motion, double until,
                                   const Filter& filter) const override {
     const M own = narrowed<M>(motion, "motion");
     const PlacedShape placed = place(shape, turns<M> ? Eigen::Quaterniond::Identity() : motion.orientation);
-    return kds::collision::next_contact(world_, placed, own, until, filter);
+    return kds::collision::next_contact(whole(), placed, own, until, filter);
   }
   std::optional<Hit> next_contact_of(BodyId body, double until, const Filter& filter) const override {
-    return kds::collision::next_contact_of(world_, body, until, filter);
+    return kds::collision::next_contact_of(whole(), body, until, filter);
   }
   std::optional<Contact> next_contact_between(BodyId a, BodyId b, double until) const override {
-    return kds::collision::next_contact_between(world_, a, b, until);
+    return kds::collision::next_contact_between(whole(), a, b, until);
   }
   Approach closest_approach(BodyId a, BodyId b, double until) const override {
-    return kds::collision::closest_approach(world_, a, b, until);
+    return kds::collision::closest_approach(whole(), a, b, until);
   }
 
  private:
-  /// A motion, and those that add_body() and update_motion() in Python name `then`.
-  static std::vector<M> narrowed_script(const std::vector<Motion>& pieces) {
-    std::vector<M> own;
-    own.reserve(pieces.size());
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const std::string name = i == 0 ? "motion" : "then[" + std::to_string(i - 1) + "]";
-      own.push_back(narrowed<M>(pieces[i], name));
-      if (!in_range(own.back())) refuse_motion(own.back(), name);
-    }
-    return own;
+  /// For all but running.
+  BasicWorld<M>& whole() const {
+    if constexpr (divided) return world_.whole();
+    if constexpr (!divided) return world_;
   }
 
   /// Of a body that is to enter later the motion is that of its start.
-  Motion widened(const M& motion, BodyId id) const {
-    Motion wide = kds::io::to_piece(motion);
-    if constexpr (!turns<M>) wide.orientation = Eigen::Quaterniond(world_.shape(id).rotation);
-    return wide.start() < world_.now() ? wide.restarted(world_.now()) : wide;
+  Motion now_of(const M& motion, BodyId id) const {
+    Motion wide = widened(path_of(motion).start < now() ? motion.restarted(now()) : motion);
+    if constexpr (!turns<M>) wide.orientation = Eigen::Quaterniond(whole().shape(id).rotation);
+    return wide;
   }
 
-  Teller<M> teller_;
-  BasicWorld<M> world_;
+  std::conditional_t<divided, TellerOfDomains, Teller<M>> teller_;
+  mutable World world_;  ///< one that is divided is made whole to be asked
 };
 
 }  // namespace
 
-std::unique_ptr<AnyWorld> make_world(int degree, bool turning, const WorldOptions& options,
-                                     AnyWorld::Listener listener) {
+std::unique_ptr<AnyWorld> make_world(const WorldType& type, const WorldOptions& options, AnyWorld::Listener listener) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
-  if (degree != 1 && degree != 2) {
-    throw std::invalid_argument("degree: must be 1 (lines) or 2 (parabolas), not " + std::to_string(degree));
-  }
+  const int degree = type.degree;
   const auto make = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
     return std::make_unique<WorldOf<M>>(options, std::move(listener));
   };
-  if (turning) return degree == 1 ? make(RigidMotion<1>{}) : make(RigidMotion<2>{});
-  return degree == 1 ? make(PointMotion<1>{}) : make(PointMotion<2>{});
+  const auto divide = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
+    const ParallelOptions parallel{.threads = options.threads, .domains = type.domains};
+    return std::make_unique<WorldOf<M, true>>(options, parallel, std::move(listener));
+  };
+  const auto refuse = [degree](const std::string& most) {
+    return std::invalid_argument("degree: must be 1 (lines)" + most + ", not " + std::to_string(degree));
+  };
+  if (type.divided() && type.turning) throw std::invalid_argument("domains: must be 1 where bodies turn");
+  if (type.divided()) {
+    if (degree != 1 && degree != 2) throw refuse(" or 2 (parabolas) in a world in domains");
+    return degree == 1 ? divide(PointMotion<1>{}) : divide(PointMotion<2>{});
+  }
+  if (type.turning) {
+    if (degree != 1 && degree != 2) throw refuse(" or 2 (parabolas) where bodies turn");
+    return degree == 1 ? make(RigidMotion<1>{}) : make(RigidMotion<2>{});
+  }
+  switch (degree) {
+    case 1:
+      return make(PointMotion<1>{});
+    case 2:
+      return make(PointMotion<2>{});
+    case 3:
+      return make(PointMotion<3>{});
+    case 4:
+      return make(PointMotion<4>{});
+    case 5:
+      return make(PointMotion<5>{});
+    default:
+      throw refuse(", 2 (parabolas), or up to 5 (splines)");
+  }
 }
 
 }  // namespace kds_python

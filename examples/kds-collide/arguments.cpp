@@ -4,6 +4,7 @@
 #include "collision/parallel/parallel_options.hpp"
 #include "io/number_text.hpp"
 #include "io/output_file.hpp"
+#include "io/vtk.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -64,6 +65,8 @@ std::vector<std::pair<const char*, std::string>> outputs(const Arguments& argume
           {"--stats", arguments.stats},
           {"--view", arguments.view},
           {"--gltf", arguments.gltf},
+          {"--vtk", arguments.vtk},
+          {"--vtk", arguments.vtk.empty() ? "" : frames_folder(arguments.vtk).string()},
           {"--checkpoint", arguments.checkpoint}};
 }
 
@@ -103,6 +106,10 @@ void check_parts(const Arguments& arguments) {
   if (is_part_of(arguments.scene, arguments.events)) throw ArgumentError("--events: the scene would be a part of them");
 }
 
+bool pictures(const Arguments& arguments) {
+  return !arguments.view.empty() || !arguments.gltf.empty() || !arguments.vtk.empty();
+}
+
 void check_checkpoints(const Arguments& arguments) {
   const double every = arguments.run.checkpoint_every;
   if (arguments.checkpoint.empty()) {
@@ -113,7 +120,7 @@ void check_checkpoints(const Arguments& arguments) {
   if (!(every > 0 && std::isfinite(1 / every))) {
     throw ArgumentError("--checkpoint: needs --checkpoint-every, a time > 0 that is not too short");
   }
-  if (!arguments.view.empty() || !arguments.gltf.empty()) {
+  if (pictures(arguments)) {
     throw ArgumentError("--checkpoint: there are no pictures of a run in parts");
   }
   for (const std::string& file : {arguments.checkpoint, arguments.events}) {
@@ -179,6 +186,11 @@ void describe(CLI::App& app, Arguments& arguments) {
   app.add_option("--gltf", arguments.gltf, "Write an animation in the format glTF")
       ->type_name("FILE.gltf")
       ->check(not_empty());
+  app.add_option("--vtk", arguments.vtk, "Write a series of surfaces in the formats of VTK, which ParaView reads")
+      ->type_name("FILE.pvd")
+      ->check(not_empty());
+  add_number<double>(app, "--frame-rate", arguments.frame_rate, "So many times a second in glTF and VTK (default: 60)")
+      ->type_name("HZ");
   app.add_option("--checkpoint", arguments.checkpoint, "Write the state of the run now and then, to go on from")
       ->type_name("FILE")
       ->check(not_empty());
@@ -254,8 +266,12 @@ void check(const Arguments& arguments) {
   }
   if (run.broad_phase == "sap" && run.rate == 0) throw ArgumentError("--rate: must be > 0 for the broad phase \"sap\"");
   if (run.domains > kds::collision::most_domains) throw ArgumentError("--domains: at most 65535");
-  const bool pictures = !arguments.view.empty() || !arguments.gltf.empty();
-  if (run.domains != 1 && pictures) throw ArgumentError("--domains: there are no pictures of a scene that is divided");
+  if (!arguments.vtk.empty() && !is_series_name(arguments.vtk)) throw ArgumentError("--vtk: must end in .pvd");
+  if (!(arguments.frame_rate > 0 && std::isfinite(arguments.frame_rate))) {
+    throw ArgumentError("--frame-rate: must be finite and > 0");
+  }
+  if (run.domains != 1 && pictures(arguments))
+    throw ArgumentError("--domains: there are no pictures of a scene that is divided");
   if (run.domains != 1 && run.pairs)
     throw ArgumentError("--domains: volumes are not told of in a scene that is divided");
   check_parts(arguments);

@@ -19,6 +19,8 @@ struct Arguments {
   std::string stats;
   std::string view;
   std::string gltf;
+  std::string vtk;
+  double frame_rate = 60;       ///< of pictures, 1/s
   std::optional<double> until;  ///< s
   kds::io::RunOptions run;
   bool events_apart = false;  ///< each process writes its own, into a part of `events`

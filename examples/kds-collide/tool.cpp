@@ -12,6 +12,7 @@
 #include "io/replay.hpp"
 #include "io/scene_reader.hpp"
 #include "io/stats_json.hpp"
+#include "io/vtk.hpp"
 
 #include <unistd.h>
 
@@ -138,7 +139,8 @@ class Simulation {
       view_.emplace(arguments_.view);
     }
     if (writes && !arguments_.gltf.empty()) gltf_.emplace(arguments_.gltf);
-    if (view_ || gltf_) sinks_.add(recorder_.emplace(scene_));
+    if (writes && !arguments_.vtk.empty()) vtk_.emplace(arguments_.vtk);
+    if (view_ || gltf_ || vtk_) sinks_.add(recorder_.emplace(scene_));
     if (!quiet && isatty(STDERR_FILENO) != 0) {
       sinks_.add(progress_.emplace(scene_.begin_time, scene_.end_time, !parts_));
       arguments_.run.steady_progress = true;
@@ -156,7 +158,8 @@ class Simulation {
   void close() {
     const std::string title = std::filesystem::path(arguments_.scene).filename().string();
     if (view_) view_->write(replay_page(recorder_->to_json(title), default_three_folder()));
-    if (gltf_) gltf_->write(to_gltf(scene_, recorder_->record(), title));
+    if (gltf_) gltf_->write(to_gltf(scene_, recorder_->record(), title, arguments_.frame_rate));
+    if (vtk_) vtk_->write(scene_, recorder_->record(), arguments_.frame_rate);
     if (stats_) stats_->write(to_json(result_, arguments_.run, read_seconds_));
     each_output([](auto& output) { output.close(); });
   }
@@ -173,6 +176,7 @@ class Simulation {
     if (parts_) what(*parts_);
     if (view_) what(*view_);
     if (gltf_) what(*gltf_);
+    if (vtk_) what(*vtk_);
     if (stats_) what(*stats_);
   }
 
@@ -227,6 +231,7 @@ class Simulation {
   std::optional<EventCsv> events_;
   std::optional<EventsApart> parts_;
   std::optional<OutputFile> stats_, view_, gltf_;
+  std::optional<VtkSeries> vtk_;
   std::optional<ReplayRecorder> recorder_;
   std::optional<ProgressBar> progress_;
   RunResult result_;

@@ -12,9 +12,10 @@ orientations unit quaternions w, x, y, z. What is wrong with an argument is said
 a call is not possible now. The guide is docs/python.md.
 """
 
-from kds._events import EventKind, event_dtype, feature_name
+from kds._events import EventKind, event_dtype, feature_name, periodic_event_dtype
 from kds._kds import Shape, version as __version__
 from kds._motion import Motion
+from kds._periodic import PeriodicWorld
 from kds._queries import Approach, Distance
 from kds._scene import Run, Scene, generate_scene
 from kds._shapes import box, capsule, compound, half_space, heightfield, hull, mesh, read_mesh, sphere
@@ -28,6 +29,7 @@ __all__ = [
     "Distance",
     "EventKind",
     "Motion",
+    "PeriodicWorld",
     "Run",
     "Scene",
     "Shape",
@@ -43,6 +45,7 @@ __all__ = [
     "heightfield",
     "hull",
     "mesh",
+    "periodic_event_dtype",
     "read_mesh",
     "sphere",
 ]

@@ -29,6 +29,8 @@ from kds._motion import (
     ACCELERATION,
     ANGULAR_VELOCITY,
     COLUMNS,
+    HIGHER,
+    NOTHING,
     ORIENTATION,
     POSITION,
     STILL,
@@ -36,24 +38,27 @@ from kds._motion import (
     UPRIGHT,
     VELOCITY,
     Motion,
+    higher_terms,
     pieces,
+    scripts,
 )
 
 
-class Bodies:
-    """How bodies come into a World, and what they are there."""
+class MovingBodies:
+    """How bodies come into a world of any kind, and how they move there."""
 
-    _core: _kds.World
+    _core: Any
 
     def add_body(
         self,
         shape: Shape,
-        position: ArrayLike,
+        position: ArrayLike | Motion,
         velocity: ArrayLike = STILL,
         acceleration: ArrayLike = STILL,
         *,
         orientation: ArrayLike = UPRIGHT,
         angular_velocity: ArrayLike = STILL,
+        higher: ArrayLike = NOTHING,
         start: float | None = None,
         then: Motion | Sequence[Motion] = (),
         mass: float = 1.0,
@@ -72,8 +77,10 @@ class Bodies:
         """Adds a body; returns its id.
 
         position, velocity, acceleration, angular_velocity (rad/s): vectors (3,); orientation: a unit quaternion w, x,
-        y, z. The motion is that from `start` (s) on, now if it is left out; a body with a start to come enters then.
-        `then`: further pieces, each later than the one before. `inertia` (worlds that turn): a moment or a tensor (3,
+        y, z; `higher` (k, 3), in worlds of degree 3 to 5: coefficients of (t - start)^3 and on. The motion is that from
+        `start` (s) on, now if it is left out; a body with a start to come enters then. `then`: further pieces, each
+        later than the one before. A Motion as `position` is the whole motion, in one piece or several, and stands for
+        all of these. `inertia` (worlds that turn): a moment or a tensor (3,
         3), else that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may
         meet if the category of each shares a bit with collides_with of the other, and their group is not the same, or
         0. A sensor reports, and passes through all. user_data: a number of 64 bits of your own, which events carry.
@@ -83,17 +90,27 @@ class Bodies:
         tensor = None
         if inertia is not None and array_of("inertia", inertia).ndim != 0:
             tensor, inertia = doubles("inertia", inertia, (3, 3)), None
+        if isinstance(position, Motion):
+            given = (velocity, acceleration, orientation, angular_velocity, higher, start, then)
+            left_out = (STILL, STILL, UPRIGHT, STILL, NOTHING, None, ())
+            if any(value is not default for value, default in zip(given, left_out)):
+                raise ValueError("position: is a kds.Motion, so no other part of the motion must be given")
+            motions, later = _whole_motion("position", position)
+        else:
+            motions = np.empty((1, COLUMNS))
+            motions[:, POSITION] = vector("position", position)
+            motions[:, VELOCITY] = vector("velocity", velocity)
+            motions[:, ACCELERATION] = vector("acceleration", acceleration)
+            motions[:, TIME] = self._core.now() if start is None else number("start", start)
+            motions[:, ORIENTATION] = doubles("orientation", orientation, (4,))
+            motions[:, ANGULAR_VELOCITY] = vector("angular_velocity", angular_velocity)
+            motions[:, HIGHER] = higher_terms("higher", higher, ())
+            later = scripts("then", then, motions[:, TIME])
         added = self._add(
             [shape_of("shape", shape)],
             None,
-            1,
-            position=vector("position", position)[None],
-            velocity=vector("velocity", velocity),
-            acceleration=vector("acceleration", acceleration),
-            orientation=doubles("orientation", orientation, (4,)),
-            angular_velocity=vector("angular_velocity", angular_velocity),
-            start=None if start is None else number("start", start),
-            then=then,
+            motions,
+            later,
             mass=number("mass", mass),
             inertia=0.0 if inertia is None else number("inertia", inertia),
             tensor=tensor,
@@ -120,7 +137,9 @@ class Bodies:
         radii: ArrayLike | None = None,
         orientations: ArrayLike = UPRIGHT,
         angular_velocities: ArrayLike = STILL,
+        higher: ArrayLike = NOTHING,
         starts: ArrayLike | None = None,
+        then: Motion | Sequence[Motion] = (),
         masses: ArrayLike = 1.0,
         inertias: ArrayLike = 0.0,
         fixed: ArrayLike = False,
@@ -137,8 +156,9 @@ class Bodies:
         """Adds n bodies; returns their ids (n,), of uint64.
 
         shapes: one for all, or n; or None with `radii`, a number or (n,): balls. positions (n, 3). Of all others either
-        (n, 3), orientations (n, 4), numbers (n,), or one for all. What they mean, add_body() says; inertias are
-        moments, 0 for that of the shape.
+        (n, 3), orientations (n, 4), higher (n, k, 3), numbers (n,), or one for all. What they mean, add_body() says;
+        inertias are moments, 0 for that of the shape. `then`: m further pieces for each, a Motion with `start` (n, m)
+        and positions (n, m, 3), ...; with `start` (m,), or as several Motions, they count for all.
 
         All are added or, if one is wrong, none: ValueError names it, bodies[17].
         """
@@ -153,17 +173,19 @@ class Bodies:
             several = list(shapes) if isinstance(shapes, Iterable) else []
             if len(several) != n or not all(isinstance(shape, Shape) for shape in several):
                 raise ValueError(f"shapes: must be a kds.Shape or {n} of them, as many as positions")
+        motions = np.empty((n, COLUMNS))
+        motions[:, POSITION] = where
+        motions[:, VELOCITY] = rows("velocities", velocities, n, 3)
+        motions[:, ACCELERATION] = rows("accelerations", accelerations, n, 3)
+        motions[:, TIME] = self._core.now() if starts is None else column("starts", starts, n)
+        motions[:, ORIENTATION] = rows("orientations", orientations, n, 4)
+        motions[:, ANGULAR_VELOCITY] = rows("angular_velocities", angular_velocities, n, 3)
+        motions[:, HIGHER] = higher_terms("higher", higher, (n,))
         return self._add(
             several,
             None if radii is None else column("radii", radii, n),
-            n,
-            position=where,
-            velocity=rows("velocities", velocities, n, 3),
-            acceleration=rows("accelerations", accelerations, n, 3),
-            orientation=rows("orientations", orientations, n, 4),
-            angular_velocity=rows("angular_velocities", angular_velocities, n, 3),
-            start=None if starts is None else column("starts", starts, n),
-            then=(),
+            motions,
+            scripts("then", then, motions[:, TIME]),
             mass=column("masses", masses, n),
             inertia=column("inertias", inertias, n),
             tensor=None,
@@ -178,6 +200,91 @@ class Bodies:
             sensor=flags("sensors", sensors, n),
             user_data=unsigned("user_data", user_data, n, 64),
         )
+
+    def _add(
+        self,
+        shapes: list[Shape],
+        radii: Doubles | None,
+        motions: Doubles,
+        later: Doubles,
+        *,
+        mass: Any,
+        inertia: Any,
+        tensor: Any,
+        fixed: Any,
+        restitution: Any,
+        friction: Any,
+        tangential_restitution: Any,
+        rolling_friction: Any,
+        category: Any,
+        collides_with: Any,
+        group: Any,
+        sensor: Any,
+        user_data: Any,
+    ) -> Ids:
+        n = len(motions)
+        numbers = np.empty((n, 6))
+        surfaces = (restitution, friction, tangential_restitution, rolling_friction)
+        for place, value in enumerate((mass, inertia, *surfaces)):
+            numbers[:, place] = value
+        both = np.stack([category, collides_with, group], axis=1)
+        bits = fixed + np.uint8(2) * sensor
+        if n == 0:
+            return np.empty(0, np.uint64)
+        return self._core.add(shapes, radii, motions, numbers, both, bits, user_data, tensor, later)
+
+    def __len__(self) -> int:
+        return self._core.size()
+
+    def __contains__(self, body: object) -> bool:
+        if not isinstance(body, (int, np.integer)) or not 0 <= body < 2**64:
+            return False
+        return self._core.contains(int(body))
+
+    @property
+    def bodies(self) -> Ids:
+        """The ids of all bodies that have entered, or enter now (n,)."""
+        raise NotImplementedError
+
+    def _motions(self, bodies: ArrayLike | None) -> Doubles:
+        return self._core.motions_now(self.bodies if bodies is None else ids("bodies", bodies), False)
+
+    def positions(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Where the centres are now (n, 3): of these bodies, or of all, as `bodies` has them. Of one that is to enter
+        later: where it will."""
+        return self._motions(bodies)[:, POSITION].copy()
+
+    def velocities(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their velocities (n, 3)."""
+        return self._motions(bodies)[:, VELOCITY].copy()
+
+    def accelerations(self, bodies: ArrayLike | None = None) -> Doubles:
+        """Their accelerations (n, 3), those by resting contacts included."""
+        return self._motions(bodies)[:, ACCELERATION].copy()
+
+    def higher(self, bodies: ArrayLike | None = None) -> Doubles:
+        """The coefficients of (t - now)^3, ^4 and ^5 of their paths (n, 3, 3), which are 0 beyond the degree of the
+        world."""
+        return self._motions(bodies)[:, HIGHER].reshape(-1, 3, 3).copy()
+
+    def position(self, body: int) -> Doubles:
+        """Where the centre of one body is now (3,)."""
+        return self.positions([identity("body", body)])[0]
+
+    def velocity(self, body: int) -> Doubles:
+        """Its velocity (3,)."""
+        return self.velocities([identity("body", body)])[0]
+
+
+class Bodies(MovingBodies):
+    """What bodies are in a World."""
+
+    _core: _kds.World
+
+    @property
+    def bodies(self) -> Ids:
+        """The ids of all bodies that have entered, or enter now (n,)."""
+        return self._core.in_box(np.full(3, -math.inf), np.full(3, math.inf))
 
     def attach_sensor(
         self,
@@ -199,80 +306,6 @@ class Bodies:
             int(unsigned("user_data", user_data, 1, 64)[0]),
         )
 
-    def _add(
-        self,
-        shapes: list[Shape],
-        radii: Doubles | None,
-        n: int,
-        *,
-        position: Any,
-        velocity: Any,
-        acceleration: Any,
-        orientation: Any,
-        angular_velocity: Any,
-        start: Any,
-        then: Motion | Sequence[Motion],
-        mass: Any,
-        inertia: Any,
-        tensor: Any,
-        fixed: Any,
-        restitution: Any,
-        friction: Any,
-        tangential_restitution: Any,
-        rolling_friction: Any,
-        category: Any,
-        collides_with: Any,
-        group: Any,
-        sensor: Any,
-        user_data: Any,
-    ) -> Ids:
-        motions = np.empty((n, COLUMNS))
-        motions[:, POSITION] = position
-        motions[:, VELOCITY] = velocity
-        motions[:, ACCELERATION] = acceleration
-        motions[:, TIME] = self._core.now() if start is None else start
-        motions[:, ORIENTATION] = orientation
-        motions[:, ANGULAR_VELOCITY] = angular_velocity
-        numbers = np.empty((n, 6))
-        surfaces = (restitution, friction, tangential_restitution, rolling_friction)
-        for place, value in enumerate((mass, inertia, *surfaces)):
-            numbers[:, place] = value
-        both = np.stack([category, collides_with, group], axis=1)
-        bits = fixed + np.uint8(2) * sensor
-        if n == 0:
-            return np.empty(0, np.uint64)
-        later = pieces("then", then, motions[0, TIME])
-        return self._core.add(shapes, radii, motions, numbers, both, bits, user_data, tensor, later)
-
-    def __len__(self) -> int:
-        return self._core.size()
-
-    def __contains__(self, body: object) -> bool:
-        if not isinstance(body, (int, np.integer)) or not 0 <= body < 2**64:
-            return False
-        return self._core.contains(int(body))
-
-    @property
-    def bodies(self) -> Ids:
-        """The ids of all bodies that have entered, or enter now (n,)."""
-        return self._core.in_box(np.full(3, -math.inf), np.full(3, math.inf))
-
-    def _motions(self, bodies: ArrayLike | None) -> Doubles:
-        return self._core.motions_now(self.bodies if bodies is None else ids("bodies", bodies), False)
-
-    def positions(self, bodies: ArrayLike | None = None) -> Doubles:
-        """Where the centres are now (n, 3): of these bodies, or of all, as `bodies` has them. Of one that is to enter
-        later: where it will."""
-        return self._motions(bodies)[:, POSITION].copy()
-
-    def velocities(self, bodies: ArrayLike | None = None) -> Doubles:
-        """Their velocities (n, 3)."""
-        return self._motions(bodies)[:, VELOCITY].copy()
-
-    def accelerations(self, bodies: ArrayLike | None = None) -> Doubles:
-        """Their accelerations (n, 3), those by resting contacts included."""
-        return self._motions(bodies)[:, ACCELERATION].copy()
-
     def orientations(self, bodies: ArrayLike | None = None) -> Doubles:
         """Their orientations (n, 4): w, x, y, z."""
         return self._motions(bodies)[:, ORIENTATION].copy()
@@ -280,14 +313,6 @@ class Bodies:
     def angular_velocities(self, bodies: ArrayLike | None = None) -> Doubles:
         """Their angular velocities (n, 3), rad/s; of a body that precesses that of its present piece."""
         return self._motions(bodies)[:, ANGULAR_VELOCITY].copy()
-
-    def position(self, body: int) -> Doubles:
-        """Where the centre of one body is now (3,)."""
-        return self.positions([identity("body", body)])[0]
-
-    def velocity(self, body: int) -> Doubles:
-        """Its velocity (3,)."""
-        return self.velocities([identity("body", body)])[0]
 
     def shape(self, body: int) -> Shape:
         """The shape that it was added with."""
@@ -324,3 +349,11 @@ class Bodies:
     def user_data(self, body: int) -> int:
         """Your own number for it, 0 if none was given."""
         return self._core.user_data(identity("body", body))
+
+
+def _whole_motion(name: str, motion: Motion) -> tuple[Doubles, Doubles]:
+    """The first piece of a motion, and those after it."""
+    table = pieces(name, motion, -math.inf)
+    if len(table) == 0:
+        raise ValueError(f"{name}: has no pieces")
+    return table[:1], table[1:]

@@ -2,20 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Sequence
+from typing import Any, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
 from kds._arrays import Doubles, Ids, column, doubles, identity, ids, one_or_more, rows, unsigned, vector
-from kds._motion import ACCELERATION, ANGULAR_VELOCITY, ORIENTATION, POSITION, TIME, VELOCITY, Motion, pieces
+from kds._motion import (
+    ACCELERATION,
+    ANGULAR_VELOCITY,
+    COLUMNS,
+    HIGHER,
+    ORIENTATION,
+    POSITION,
+    TIME,
+    VELOCITY,
+    Motion,
+    higher_terms,
+    pieces,
+    scripts,
+)
 
 
-class Edits:
-    """How the bodies of a World are changed."""
+class MotionEdits:
+    """How the bodies of a world of any kind are changed."""
 
-    _core: _kds.World
+    _core: Any
     _turning: bool
 
     def remove_body(self, body: int) -> None:
@@ -31,6 +44,7 @@ class Edits:
         acceleration: ArrayLike | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
+        higher: ArrayLike | None = None,
         then: Motion | Sequence[Motion] = (),
     ) -> None:
         """Gives a body a new motion from now on; what is left out stays as it is now. Pieces to come are discarded, and
@@ -41,15 +55,9 @@ class Edits:
             "accelerations": None if acceleration is None else vector("acceleration", acceleration),
             "orientations": None if orientation is None else doubles("orientation", orientation, (4,)),
             "angular_velocities": None if angular_velocity is None else vector("angular_velocity", angular_velocity),
+            "higher": None if higher is None else higher_terms("higher", higher, ()).reshape(1, 3, 3),
         }
-        which = np.array([identity("body", body)], np.uint64)
-        first = self._changed(which, **one)
-        self._core.update_script(int(which[0]), np.vstack([first, pieces("then", then, first[0, TIME])]))
-
-    def append_motion(self, body: int, motion: Motion | Sequence[Motion]) -> None:
-        """Adds pieces of motion after those that are still to come, each later than the one before: so a stream of
-        pieces needs no more than the next ones. All are added, or none."""
-        self._core.append(identity("body", body), pieces("motion", motion, self._core.now()))
+        self._update(np.array([identity("body", body)], np.uint64), then, **one)
 
     def update_motions(
         self,
@@ -60,30 +68,35 @@ class Edits:
         accelerations: ArrayLike | None = None,
         orientations: ArrayLike | None = None,
         angular_velocities: ArrayLike | None = None,
+        higher: ArrayLike | None = None,
+        then: Motion | Sequence[Motion] = (),
     ) -> None:
-        """The same for n bodies, all or, if one is wrong, none: ids (n,), and (n, 3) or (3,), orientations (n, 4)."""
-        which = ids("bodies", bodies)
-        motions = self._changed(
-            which,
+        """The same for n bodies, all or, if one is wrong, none: ids (n,), and (n, 3) or (3,), orientations (n, 4),
+        higher (n, k, 3) or (k, 3); `then` as add_bodies() has it."""
+        self._update(
+            ids("bodies", bodies),
+            then,
             positions=positions,
             velocities=velocities,
             accelerations=accelerations,
             orientations=orientations,
             angular_velocities=angular_velocities,
+            higher=higher,
         )
-        self._core.update(which, motions)
 
-    def _changed(
+    def _update(
         self,
         which: Ids,
+        then: Motion | Sequence[Motion],
         *,
         positions: ArrayLike | None,
         velocities: ArrayLike | None,
         accelerations: ArrayLike | None,
         orientations: ArrayLike | None,
         angular_velocities: ArrayLike | None,
-    ) -> Doubles:
-        """The motions of now, with what is given in their place."""
+        higher: ArrayLike | None,
+    ) -> None:
+        """The motions of now, with what is given in their place, and then those."""
         if orientations is not None and not self._turning:
             raise ValueError("orientation: bodies keep theirs in a world that is not turning")
         motions = self._core.motions_now(which, True)
@@ -98,18 +111,35 @@ class Edits:
         for name, value, columns in given:
             if value is not None:
                 motions[:, columns] = rows(name, value, len(which), columns.stop - columns.start)
-        return motions
+        if higher is not None:
+            motions[:, HIGHER] = higher_terms("higher", higher, (len(which),))
+        later = scripts("then", then, motions[:, TIME])
+        if len(later):
+            motions = np.concatenate([motions[:, None], later.reshape(len(which), -1, COLUMNS)], axis=1)
+        self._core.update(which, motions.reshape(-1, COLUMNS))
+
+    def set_restitution(self, bodies: ArrayLike, restitution: ArrayLike) -> None:
+        """Gives bodies other restitutions, from 0 to 1: an id, or ids (n,), and a number for all or (n,). They count from
+        the next contact on; all change, or none."""
+        which = one_or_more("bodies", bodies)
+        self._core.set_restitutions(which, column("restitution", restitution, len(which)))
+
+
+class Edits(MotionEdits):
+    """How the bodies of a World are changed."""
+
+    _core: _kds.World
+
+    def append_motion(self, body: int, motion: Motion | Sequence[Motion]) -> None:
+        """Adds pieces of motion after those that are still to come, each later than the one before: so a stream of
+        pieces needs no more than the next ones. All are added, or none."""
+        self._core.append(identity("body", body), pieces("motion", motion, self._core.now()))
 
     def set_mass(self, bodies: ArrayLike, mass: ArrayLike) -> None:
         """Gives bodies other masses: an id, or ids (n,), and a number for all or (n,); inertias change by the same
         factors, and motions do not change. ValueError for bodies that are fixed. All change, or none."""
         which = one_or_more("bodies", bodies)
         self._core.set_masses(which, column("mass", mass, len(which)))
-
-    def set_restitution(self, bodies: ArrayLike, restitution: ArrayLike) -> None:
-        """The same for restitutions, from 0 to 1; they count from the next contact on."""
-        which = one_or_more("bodies", bodies)
-        self._core.set_restitutions(which, column("restitution", restitution, len(which)))
 
     def set_filter(
         self,

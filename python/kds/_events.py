@@ -32,6 +32,7 @@ class EventKind(IntEnum):
     PASS = 10  #: two bodies are let through each other
     PIECE = 11  #: a piece of a body's motion starts: with report_pieces
     TIMER = 12  #: of World.set_timer; a is its number
+    WRAP = 13  #: of a PeriodicWorld: a body comes in at the other side
 
 
 def kind_of(name: str, value: Any) -> int:
@@ -44,6 +45,18 @@ def kind_of(name: str, value: Any) -> int:
 def as_events(rows: np.ndarray) -> np.recarray:
     """Rows with names for columns: events.time as well as events["time"]."""
     return rows.view(event_dtype).view(np.recarray)
+
+
+#: Of a PeriodicWorld: the same, with offset (3,) and impulse. `offset` says which copy of b the body a meets: the one that
+#: many periods away; of WRAP, by how many periods the body was moved back. `impulse` (mass * length/s) was given to b
+#: along the normal, and to a against it.
+periodic_event_dtype: np.dtype = np.dtype(
+    (np.record, np.dtype(_kds.event_dtype.descr + [("offset", np.int64, (3,)), ("impulse", np.float64)]))
+)
+
+
+def as_periodic_events(rows: np.ndarray) -> np.recarray:
+    return rows.view(periodic_event_dtype).view(np.recarray)
 
 
 def feature_name(feature: Any) -> str:

@@ -11,7 +11,20 @@ from kds import _kds
 from kds._arrays import Ids, doubles, identity, number, shape_of, vector, whole
 from kds._events import as_events
 from kds._kds import Shape
-from kds._motion import ACCELERATION, ANGULAR_VELOCITY, COLUMNS, ORIENTATION, POSITION, STILL, TIME, UPRIGHT, VELOCITY
+from kds._motion import (
+    ACCELERATION,
+    ANGULAR_VELOCITY,
+    COLUMNS,
+    HIGHER,
+    NOTHING,
+    ORIENTATION,
+    POSITION,
+    STILL,
+    TIME,
+    UPRIGHT,
+    VELOCITY,
+    higher_terms,
+)
 
 Filter = Callable[[int], bool]
 
@@ -148,6 +161,7 @@ class Queries:
         until: float,
         orientation: ArrayLike = UPRIGHT,
         angular_velocity: ArrayLike = STILL,
+        higher: ArrayLike = NOTHING,
         filter: Filter | None = None,
     ) -> np.record | None:
         """The first body that a shape will meet, up to `until` (s), which is in no world and moves so from now on, as
@@ -159,6 +173,7 @@ class Queries:
         motion[0, TIME] = self._core.now()
         motion[0, ORIENTATION] = doubles("orientation", orientation, (4,))
         motion[0, ANGULAR_VELOCITY] = vector("angular_velocity", angular_velocity)
+        motion[0, HIGHER] = higher_terms("higher", higher, ())
         ends = number("until", until)
         return _first(self._core.next_contact(shape_of("shape", shape), motion, ends, _checked(filter)))
 

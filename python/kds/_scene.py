@@ -100,8 +100,8 @@ class Scene:
         `csv`, `replay`: files to write, which are those of the tool's --events and --view to the byte; they appear when
         the run has ended. gather=False: no array of events. The other arguments are the tool's; with more `domains` than
         1, or 0 for as many as are best, the threads run parts of the scene (docs/parallel.md), the events are the same,
-        and there are no pairs and no replay. Other threads go on meanwhile. OSError for files that cannot be written; RuntimeError where a replay wants three.js, which is not
-        there.
+        and there are no pairs and no replay. Other threads go on meanwhile. OSError for files that cannot be written;
+        RuntimeError where a replay wants three.js, which is not there.
         """
         if domains != 1 and (pairs or replay is not None or self.turning):
             what = "pairs are told of" if pairs else "bodies turn" if self.turning else "there is a replay"

@@ -3,24 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Callable
+from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
 from kds._arrays import doubles, flag, number, whole, word
 from kds._bodies import Bodies
 from kds._edits import Edits
-from kds._events import EventKind, as_events, kind_of
 from kds._queries import Queries
+from kds._running import Running
 
 
-class World(Bodies, Edits, Queries):
+class World(Running, Bodies, Edits, Queries):
     """Moves bodies through time and finds their contacts, at exact times.
 
-    degree: 1 for straight paths, 2 for parabolas too. turning: whether bodies turn (docs/turning.md); else they keep
-    their orientation. Other arguments are the options of the C++ library (collision/world_options.hpp):
+    degree: 1 for straight paths, 2 for parabolas too, 3 to 5 for splines (docs/splines.md). turning: whether bodies
+    turn (docs/turning.md), at degree 1 or 2; else they keep their orientation. domains: more than 1, or 0 for as many as are
+    best, for a world that is run in parts by `threads` (docs/parallel.md), of degree 1 or 2: its events are the same.
+    Such a world runs by advance_to() alone and calls no functions; to be asked or changed it is made one again, which
+    takes as long as adding all bodies. Other arguments are the options of the C++ library
+    (collision/world_options.hpp):
 
     response: 'none' (bodies pass through each other, contacts and separations are reported), 'elastic' (they bounce by
         restitution and rest on each other), 'callback' (functions that are called, see on(), change the motions).
@@ -44,6 +47,7 @@ class World(Bodies, Edits, Queries):
         degree: int = 1,
         turning: bool = False,
         *,
+        domains: int = 1,
         response: str = "none",
         walls: tuple[ArrayLike, ArrayLike] | None = None,
         wall_restitution: float = 1.0,
@@ -68,6 +72,7 @@ class World(Bodies, Edits, Queries):
         self._options: dict[str, Any] | None = dict(
             degree=whole("degree", degree, 2**31 - 1),
             turning=flag("turning", turning),
+            domains=whole("domains", domains, 65535),
             gather=flag("gather", gather),
             response=word("response", response),
             broad_phase=word("broad_phase", broad_phase),
@@ -96,13 +101,6 @@ class World(Bodies, Edits, Queries):
         world._core, world._options, world._degree, world._turning = core, None, degree, turning
         return world
 
-    # ----- the clock
-
-    @property
-    def now(self) -> float:
-        """The clock, s."""
-        return self._core.now()
-
     @property
     def degree(self) -> int:
         return self._degree
@@ -111,41 +109,10 @@ class World(Bodies, Edits, Queries):
     def turning(self) -> bool:
         return self._turning
 
-    def advance_to(self, t: float) -> np.recarray:
-        """Processes everything up to and including t (s); returns the events since the last were taken (event_dtype).
-
-        Ctrl-C ends it between two events, and the world can go on. What a function that is called raises comes out,
-        after its event; then take_events() has the events so far. RuntimeError if called from within such a function.
-        """
-        self._core.advance_to(number("t", t))
-        return self.take_events()
-
-    def step(self, limit: float = math.inf) -> bool:
-        """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if
-        that is finite. What has happened, take_events() tells."""
-        return self._core.step(number("limit", limit))
-
     @property
     def next_time(self) -> float:
         """The time of the next event, s; inf if none will come. Now, if consequences of a change are not known yet."""
         return self._core.next_time()
-
-    def take_events(self) -> np.recarray:
-        """The events since the last were taken, in the order of time."""
-        return as_events(self._core.take_events())
-
-    def on(self, kind: EventKind, function: Callable[[np.record], Any] | None) -> None:
-        """Has a function called at each event of this kind, with the event; None: no more.
-
-        The function may add, remove and move bodies, those of the event too: in its time and place. What it raises ends
-        the run after that event. It costs some microseconds an event, and other threads wait for the GIL as ever.
-        """
-        number_of_kind = kind_of("kind", kind)
-        if function is None:
-            return self._core.call_at(number_of_kind, None)
-        if not callable(function):
-            raise ValueError(f"function: must be callable, and is {function!r}")
-        self._core.call_at(number_of_kind, lambda events: function(as_events(events)[0]))
 
     def set_timer(self, t: float) -> int:
         """Has an event TIMER happen at a time t (s) from now on, before the contacts of that time; on() says what is
@@ -156,41 +123,20 @@ class World(Bodies, Edits, Queries):
         """False if there is no such timer any more, or never was."""
         return self._core.cancel_timer(whole("timer", timer))
 
-    # ----- state
-
-    def save(self) -> bytes:
-        """All that decides later events, as bytes, for the same program on the same kind of machine. Events not yet
-        taken and functions that are called are not in it."""
-        return self._core.save()
-
-    def load(self, snapshot: bytes) -> None:
-        """Goes back (or on) to a state that was saved of a world with the same options. RuntimeError, and nothing is
-        changed, for bytes that are damaged or of another world."""
-        if not isinstance(snapshot, bytes):
-            raise ValueError(f"snapshot: must be bytes, and is {type(snapshot).__name__}")
-        self._core.load(snapshot)
-
     def __reduce__(self) -> Any:
         if self._options is None:
             raise RuntimeError("World: one that Scene.world() has made cannot be pickled; save() and load() it")
         return _load_world, (self._options, self.save())
 
     @property
-    def counters(self) -> dict[str, int]:
-        """The work so far: contacts, pair_tests, motion_updates, ..."""
-        return self._core.counters()
-
-    @property
     def broad_phase(self) -> str:
         """The one in use."""
         return self._core.broad_phase()
 
-    def audit(self) -> None:
-        """Checks the world against brute force, in O(n^2); RuntimeError if it is wrong."""
-        self._core.audit()
-
     def __repr__(self) -> str:
         kind = "turning, " if self._turning else ""
+        if self._options and self._options["domains"] != 1:
+            kind = "in domains, "
         return f"<kds.World: {kind}degree {self._degree}, {len(self)} bodies at {self.now} s>"
 
 

@@ -196,6 +196,18 @@ TEST_CASE("command line: --view writes a page that needs nothing else") {
   CHECK_THAT(page, Catch::Contains("\"touches\":[[1,0,0,1,2,0,0,1,0,0],[3,1,0,1,"));
 }
 
+TEST_CASE("command line: --vtk writes a list of frames, as many a second as asked for") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const Outcome outcome = kds_collide_in(folder, "scene.json --vtk v.pvd --frame-rate 2 --until 3 --quiet");
+  CHECK(outcome.code == 0);
+  const std::string list = read_file(folder / "v.pvd");
+  CHECK_THAT(list, Catch::Contains("<DataSet timestep=\"2.5\" group=\"\" part=\"0\" file=\"v.frames/frame_5.vtp\"/>"));
+  CHECK_THAT(read_file(folder / "v.frames/frame_6.vtp"), Catch::Contains("<VTKFile type=\"PolyData\""));
+  CHECK_FALSE(std::filesystem::exists(folder / "v.frames/frame_7.vtp"));
+  CHECK(folder.file_count() == 3);
+}
+
 TEST_CASE("command line: --view shows how bodies turn") {
   const TemporaryFolder folder;
   const std::filesystem::path example = KDS_COLLIDE_EXAMPLE;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -97,6 +98,31 @@ TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused
   CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
 }
 
+TEST_CASE("mesh file: lines end in LF, CR or both, and go on after a backslash; a mark of UTF-8 is passed over") {
+  const TemporaryFolder folder;
+  const std::string text = "\xEF\xBB\xBFv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nf 1 2\\\n3\nf 1 \\\n 3 \\\n 2\n";
+  std::string carriage = text, both;
+  std::replace(carriage.begin(), carriage.end(), '\n', '\r');
+  for (const char c : text) both += c == '\n' ? "\r\n" : std::string(1, c);
+  for (const std::string& written : {text, carriage, both, text.substr(0, text.size() - 1), text + "\\"}) {
+    CAPTURE(written);
+    const MeshData mesh = read_mesh_file(folder.write("a.obj", written));
+    CHECK(mesh.vertices.size() == 3);
+    CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {0, 2, 1}});
+  }
+}
+
+TEST_CASE("mesh file: faces without area are left out, whatever their corners") {
+  const TemporaryFolder folder;
+  MeshData mesh = read_mesh_file(folder.write("a.obj",
+                                              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 3 0 0\nv 2 0 0\n"
+                                              "f 1 2 3\n"
+                                              "f 1\nf 1 2\nf 2 2 2 2\nf 1 2 1 2\nf 1 4 2 5\nf 3 2 1\n"));
+  CHECK(mesh.triangles.size() == 7);
+  CHECK(leave_out_degenerate(mesh) == std::vector<std::size_t>{1, 2, 3, 4, 5});
+  CHECK(mesh.triangles == std::vector<std::array<std::uint32_t, 3>>{{0, 1, 2}, {2, 1, 0}});
+}
+
 TEST_CASE("mesh file: degenerate triangles are left out") {
   const TemporaryFolder folder;
   MeshData mesh = read_mesh_file(folder.write("a.obj",
@@ -126,7 +152,8 @@ TEST_CASE("mesh file: files that are no mesh") {
   };
   CHECK(error(folder / "none.obj") == "no such file");
   CHECK(error(folder.write("a.ply", "ply\n")) == "only .obj and .stl files are read");
-  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n")) == "a face has fewer than three corners");
+  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n")) ==
+        "line 4: a face names vertex 4, but the file has 3 vertices");
   CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n")) != "no error");
   CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf a b c\n")) != "no error");
   CHECK(error(folder.write("a.obj", std::string("\0\1\2garbage", 10))) == "has no triangles");
@@ -140,7 +167,14 @@ TEST_CASE("mesh file: files that are no mesh") {
   CHECK(face_of("1 2x/1 3") == "line 5: \"2x/1\" is not the number of a vertex");
   CHECK(face_of("0 1 2") == "line 5: \"0\" is not the number of a vertex");
   CHECK(face_of("1\v2 3 1 2") != "no error");
-  CHECK(face_of("1 2 3\r# a comment\rf 1.9 2 3") == "line 5: a line ends in CR alone; LF or CR LF is read");
+  CHECK(face_of("1 2 3\r# a comment\r\nf 1.9 2 3") == "line 7: \"1.9\" is not the number of a vertex");
+  CHECK(face_of("1 2 \\\n3 \\\n\nf 1 2 3x") == "line 8: \"3x\" is not the number of a vertex");
+  CHECK(face_of("-1 -2 -4") == "line 5: a face names vertex -4, but there are 3 before it");
+  CHECK(face_of("-1 -2 -2147483648") == "line 5: a face names vertex -2147483648, but there are 3 before it");
+  CHECK(face_of("1 2 2147483647") == "line 5: a face names vertex 2147483647, but the file has 3 vertices");
+  CHECK(face_of("") == "line 5: a face has no corners");
+  CHECK(error(folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\nf 1 4 2 3\n")) ==
+        "line 6: a polygon crosses itself");
   CHECK(error(folder.write("a.stl", "solid s\nendsolid s\n")) != "no error");
   CHECK(error(folder.write("a.stl", "x")) != "no error");
 }

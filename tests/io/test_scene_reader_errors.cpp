@@ -303,7 +303,8 @@ TEST_CASE("scene reader: bad mesh files are named with mesh and place") {
   const std::string where = "scene.json: meshes.ring.file: ring.obj: ";
   CHECK_THAT(error("v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), Catch::StartsWith(where + "triangle 0"));
   CHECK(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 2\n") == "no error");  // it is left out
-  CHECK(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n") == where + "a face names vertex 4, but the file has 3 vertices");
+  CHECK(error("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n") ==
+        where + "line 4: a face names vertex 4, but the file has 3 vertices");
   CHECK(error("v 0 0 0\nv 1 0\n") == where + "line 2: a vertex needs three coordinates");
   CHECK(error("v 0 0 0\n\nv 1 nan 0\n") == where + "line 3: \"nan\" is not a finite number");
   CHECK(error("v 0 0 x1\n") == where + "line 1: \"x1\" is not a finite number");

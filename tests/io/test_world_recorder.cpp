@@ -1,9 +1,11 @@
 // Replays of worlds that no scene file describes.
 #include "io/world_recorder.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <vector>
 
 namespace test_world_recorder {
@@ -49,6 +51,18 @@ TEST_CASE("recorder: bodies that bounce, come later, are moved and are removed")
   CHECK(data["bodies"][2]["fixed"] == true);
   CHECK(data["touches"] == json::parse("[[6,0,0,1,3,0,0,1,0,0]]"));
   CHECK(data["walls"] == json::parse("[[15,0,5,0,0,9,0,0,1]]"));
+}
+
+TEST_CASE("recorder: surfaces of a world as files, up to its clock") {
+  const kds::io::tests::TemporaryFolder folder;
+  WorldRecorder<Line> recorder({});
+  World<1> world({}, &recorder);
+  world.add_body({.shape = Sphere{1}, .motion = {Line::line({0, 0, 0}, {1, 0, 0})}});
+  world.advance_to(2);
+  recorder.write_vtk(world, (folder / "run.pvd").string(), 1);
+  CHECK(std::filesystem::exists(folder / "run.frames/frame_2.vtp"));
+  CHECK_FALSE(std::filesystem::exists(folder / "run.frames/frame_3.vtp"));
+  CHECK_THAT(kds::io::tests::read_file(folder / "run.pvd"), Catch::Contains("timestep=\"2\""));
 }
 
 TEST_CASE("recorder: a body that a callback removes, and another that gets its slot") {

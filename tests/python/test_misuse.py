@@ -54,6 +54,7 @@ class Misuse(unittest.TestCase):
         """Each argument of each function in turn is of a type that fits nowhere: one line says so, and names it."""
         zero, world = (0, 0, 0), kds.World(degree=2)
         a, b = world.add_bodies(self.ball, [[0, 0, 0], [9, 0, 0]])
+        periodic = kds.PeriodicWorld(zero, (9, 9, 9))
         line, net = kds.SortedList([[0, 1], [1, 0]]), kds.Delaunay(np.eye(3, 2)[:, None])
         scene = kds.Scene.parse('{"scene": 1, "end_time": 1, "response": "none", "bodies": []}')
         tried = 0
@@ -61,7 +62,16 @@ class Misuse(unittest.TestCase):
             (kds.World, dict(degree=1, turning=False, response="none", walls=None, wall_restitution=1, broad_phase="auto",
                              report_pairs=False, report_pieces=False, gather=True, start_time=0, window=1, rate=0,
                              kdop=6, threads=1, zeno_contacts=100, zeno_interval=0, shortest_flight=1,
-                             orientation_error=0.01, most_edits=1)),
+                             orientation_error=0.01, most_edits=1, domains=1)),
+            (kds.PeriodicWorld, dict(low=zero, high=(9, 9, 9), degree=1, boundaries="periodic", shear_rate=0,
+                                     wall_restitution=1, wall_temperatures=np.zeros(6), seed=1, elastic_within=0,
+                                     broad_phase="auto", gather=True, start_time=0, window=1, threads=1)),
+            (kds.Motion.through, dict(times=[0, 1], positions=[zero, zero], velocities=[zero, zero],
+                                      accelerations=[zero, zero])),
+            (periodic.add_bodies, dict(shapes=self.ball, positions=[zero], velocities=zero, accelerations=zero, higher=())),
+            (periodic.step, dict(limit=1)),
+            (periodic.crossings, dict(bodies=[])),
+            (periodic.unwrapped_positions, dict(bodies=[])),
             (kds.sphere, dict(radius=1)),
             (kds.box, dict(half_extents=(1, 1, 1))),
             (kds.capsule, dict(radius=1, half_length=1)),
@@ -78,24 +88,26 @@ class Misuse(unittest.TestCase):
             (scene.run, dict(broad_phase="auto", rate=0, kdop=6, pairs=False, threads=1, gather=True, csv=None,
                              replay=None)),
             (scene.world, dict(gather=True, broad_phase="auto")),
-            (world.add_body, dict(shape=self.ball, position=zero, velocity=zero, acceleration=zero, start=0,
+            (world.add_body, dict(shape=self.ball, position=zero, velocity=zero, acceleration=zero, start=0, higher=(),
                                   orientation=(1, 0, 0, 0), angular_velocity=zero, then=(), mass=1, inertia=1,
                                   fixed=False, restitution=1, friction=0, tangential_restitution=0,
                                   rolling_friction=0, category=1, collides_with=1, sensor=False, user_data=0)),
-            (world.add_bodies, dict(shapes=self.ball, positions=[zero], velocities=zero, accelerations=zero, starts=0,
+            (world.add_bodies, dict(shapes=self.ball, positions=[zero], velocities=zero, accelerations=zero, starts=0, higher=(), then=(),
                                     orientations=(1, 0, 0, 0), angular_velocities=zero, masses=1, inertias=1,
                                     fixed=False, restitutions=1, frictions=0, tangential_restitutions=0,
                                     rolling_frictions=0, categories=1, collide_with=1, sensors=False, user_data=0)),
             (world.add_bodies, dict(shapes=None, positions=[zero], radii=1)),
             (world.remove_body, dict(body=99)),
-            (world.update_motion, dict(body=a, position=zero, velocity=zero, acceleration=zero, then=())),
-            (world.update_motions, dict(bodies=[a], positions=zero, velocities=zero, accelerations=zero)),
+            (world.update_motion, dict(body=a, position=zero, velocity=zero, acceleration=zero, higher=(), then=())),
+            (world.update_motions, dict(bodies=[a], positions=zero, velocities=zero, accelerations=zero, higher=(),
+                                        then=())),
             (world.append_motion, dict(body=a, motion=())),
             (world.set_mass, dict(bodies=a, mass=1)),
             (world.set_restitution, dict(bodies=a, restitution=1)),
             (world.set_filter, dict(bodies=a, category=1, collides_with=1)),
             (world.set_user_data, dict(bodies=a, user_data=1)),
             (world.positions, dict(bodies=[a])),
+            (world.higher, dict(bodies=[a])),
             (world.position, dict(body=a)),
             (world.velocity, dict(body=a)),
             (world.shape, dict(body=a)),
@@ -118,7 +130,7 @@ class Misuse(unittest.TestCase):
             (world.overlapping, dict(shape=self.ball, position=zero, orientation=(1, 0, 0, 0), filter=None)),
             (world.nearest, dict(point=zero, count=1, filter=None)),
             (world.next_contact, dict(shape=self.ball, position=zero, velocity=zero, acceleration=zero, until=1,
-                                      orientation=(1, 0, 0, 0), angular_velocity=zero, filter=None)),
+                                      orientation=(1, 0, 0, 0), angular_velocity=zero, higher=(), filter=None)),
             (world.next_contact_of, dict(body=a, until=1, filter=None)),
             (world.next_contact_between, dict(a=a, b=b, until=1)),
             (world.closest_approach, dict(a=a, b=b, until=1)),
@@ -169,7 +181,11 @@ class Misuse(unittest.TestCase):
         self.refused("no-such-file.obj: ", lambda: kds.read_mesh("no-such-file.obj"))
 
     def test_options(self):
-        self.refused("degree: must be 1", lambda: kds.World(3))
+        self.refused(r"degree: must be 1 \(lines\), 2 .* or up to 5 .*, not 6", lambda: kds.World(6))
+        self.refused("degree: must be 1 .* where bodies turn, not 3", lambda: kds.World(3, True))
+        self.refused("degree: must be 1 .* in domains, not 3", lambda: kds.World(3, domains=2))
+        self.refused("domains: must be 1 where bodies turn", lambda: kds.World(turning=True, domains=0))
+        self.refused("response", lambda: kds.World(domains=2, response="callbac"))
         self.refused("degree: must be a whole number", lambda: kds.World(1.5))
         self.refused("turning: must be True or False", lambda: kds.World(1, 2))
         self.refused("response: must be a string", lambda: kds.World(response=None))
