@@ -5,6 +5,7 @@
 #include "kds/roots/first_crossing.hpp"
 #include "kds/roots/root_rounding.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace kds::detail {
@@ -33,16 +34,33 @@ double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double 
 }
 
 /// p is f about now, without its leading zeros. Precondition: f > 0 just after now.
+///
+/// Where p does not decide, mostly because it has roots of very different sizes, f is looked at again from the time up
+/// to which it is known not to be negative: about a later time the near roots are not among the far ones. In a Delaunay
+/// triangulation of cubics (degree 12) one failure time in sixty needs that, and none needs exact signs.
 template <int FormalDegree, int Degree>
 double isolated_failure_time(const CertificateReference<FormalDegree>& certificate,
                              const Polynomial<Degree, Ball<double>>& p, double now, double horizon) {
-  const Crossing crossing = first_crossing(p, (horizon - now) * (1 + 0x1p-50));
-  if (crossing.status == Crossing::Status::none) return never;
-  if (crossing.status == Crossing::Status::isolated) {
-    const double x = refined_root(p, crossing.guess, crossing.after, crossing.before);
-    const double t = RootRounding(certificate, now)(p, x, crossing.after, crossing.before);
-    if (t <= horizon) return t;
-    if (t > horizon) return never;
+  constexpr int most_epochs = 8;
+  Polynomial<Degree, Ball<double>> f = p;
+  double epoch = now;
+  for (int i = 0; i < most_epochs; ++i) {
+    const Crossing crossing = first_crossing(f, (horizon - epoch) * (1 + 0x1p-50));
+    if (crossing.status == Crossing::Status::none) return never;
+    if (crossing.status == Crossing::Status::isolated) {
+      const double x = refined_root(f, crossing.guess, crossing.after, crossing.before);
+      const double t = RootRounding(certificate, epoch)(f, x, crossing.after, crossing.before);
+      if (t <= horizon) return t;
+      if (t > horizon) return never;
+      break;
+    }
+    // The sum may be rounded up; the difference is exact but for a rounding of its own.
+    const double later = epoch + crossing.after * (1 - 0x1p-20);
+    if (!(later > epoch && later - epoch <= crossing.after * (1 - 0x1p-40) && later < horizon)) break;
+    const auto about_later = certificate.template polynomial<Ball<double>>(later);
+    if (certain_sign(about_later.c[0]) <= 0) break;
+    std::copy_n(about_later.c.begin(), f.c.size(), f.c.begin());  // What is left out is zero about any time.
+    epoch = later;
   }
   return failure_time_by_signs(certificate, now, horizon);
 }
