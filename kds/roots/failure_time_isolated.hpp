@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace kds::detail {
 
@@ -41,10 +42,11 @@ double refined_root(const Polynomial<Degree, Ball<double>>& p, double x, double 
 template <int FormalDegree, int Degree>
 double isolated_failure_time(const CertificateReference<FormalDegree>& certificate,
                              const Polynomial<Degree, Ball<double>>& p, double now, double horizon) {
-  constexpr int most_epochs = 8;
-  Polynomial<Degree, Ball<double>> f = p;
+  constexpr int most_epochs = 3;
+  std::optional<Polynomial<Degree, Ball<double>>> later_terms;
   double epoch = now;
   for (int i = 0; i < most_epochs; ++i) {
+    const auto& f = later_terms ? *later_terms : p;
     const Crossing crossing = first_crossing(f, (horizon - epoch) * (1 + 0x1p-50));
     if (crossing.status == Crossing::Status::none) return never;
     if (crossing.status == Crossing::Status::isolated) {
@@ -59,7 +61,8 @@ double isolated_failure_time(const CertificateReference<FormalDegree>& certifica
     if (!(later > epoch && later - epoch <= crossing.after * (1 - 0x1p-40) && later < horizon)) break;
     const auto about_later = certificate.template polynomial<Ball<double>>(later);
     if (certain_sign(about_later.c[0]) <= 0) break;
-    std::copy_n(about_later.c.begin(), f.c.size(), f.c.begin());  // What is left out is zero about any time.
+    later_terms.emplace();
+    std::copy_n(about_later.c.begin(), p.c.size(), later_terms->c.begin());  // The others are zero about any time.
     epoch = later;
   }
   return failure_time_by_signs(certificate, now, horizon);
