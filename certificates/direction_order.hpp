@@ -30,6 +30,10 @@ struct DirectionOrder {
     return f;
   }
 
+  bool is_negative_of(const DirectionOrder& other) const {
+    return &lower == &other.upper && &upper == &other.lower && &direction == &other.direction;
+  }
+
   bool vanishes() const {
     for (std::size_t d = 0; d < Dimension; ++d) {
       if (direction[d] != 0 && !(lower.axis(static_cast<int>(d)) == upper.axis(static_cast<int>(d)))) return false;

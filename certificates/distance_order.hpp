@@ -39,6 +39,10 @@ struct DistanceOrder {
 
   /// Cheap and sufficient: both pairs are the same.
   bool vanishes() const requires(!requires { Path::sampled; }) { return (a == c && b == d) || (a == d && b == c); }
+
+  bool is_negative_of(const DistanceOrder& other) const {
+    return &a == &other.c && &b == &other.d && &c == &other.a && &d == &other.b;
+  }
 };
 
 template <class Path>

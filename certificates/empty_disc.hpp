@@ -31,6 +31,9 @@ struct OutsideDisc {
   }
   /// Cheap and sufficient: c is one of the ends.
   bool vanishes() const requires(!requires { Path::sampled; }) { return a == c || b == c; }
+  bool is_negative_of(const OutsideDisc& other) const {
+    return sign == -other.sign && &a == &other.a && &b == &other.b && &c == &other.c;
+  }
 
  private:
   template <class From>
@@ -51,6 +54,10 @@ struct PairRadius {
 
   PairRadius(Lasting<Path> first, Lasting<Path> second, double limit, double side)
       : a(first), b(second), radius(limit), sign(side) {}
+
+  bool is_negative_of(const PairRadius& other) const {
+    return sign == -other.sign && &a == &other.a && &b == &other.b && radius == other.radius;
+  }
 
   template <class Number>
   auto polynomial(double epoch) const {
@@ -75,6 +82,10 @@ struct CircleRadius {
 
   CircleRadius(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, double limit, double side)
       : a(first), b(second), c(third), radius(limit), sign(side) {}
+
+  bool is_negative_of(const CircleRadius& other) const {
+    return sign == -other.sign && &a == &other.a && &b == &other.b && &c == &other.c && radius == other.radius;
+  }
 
   template <class Number>
   auto polynomial(double epoch) const {

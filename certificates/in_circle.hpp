@@ -6,6 +6,7 @@
 #include "kds/certificate.hpp"
 #include "kds/lasting.hpp"
 #include "kds/motion.hpp"
+#include "kds/odd_permutation.hpp"
 
 namespace kds::certificates {
 
@@ -39,13 +40,18 @@ struct InCircle {
     return a == b || a == c || a == d || b == c || b == d || c == d;
   }
 
+  bool is_negative_of(const InCircle& other) const {
+    return is_odd_permutation<Path, 4>({&a, &b, &c, &d}, {&other.a, &other.b, &other.c, &other.d});
+  }
+
  private:
   template <class From>
   auto value(const From& from_d) const {
     const auto ax = from_d(a, 0), ay = from_d(a, 1);
     const auto bx = from_d(b, 0), by = from_d(b, 1);
     const auto cx = from_d(c, 0), cy = from_d(c, 1);
-    return (detail::squared(ax) + detail::squared(ay)) * (by * cx - bx * cy) + (detail::squared(bx) + detail::squared(by)) * (cy * ax - cx * ay) +
+    return (detail::squared(ax) + detail::squared(ay)) * (by * cx - bx * cy) +
+           (detail::squared(bx) + detail::squared(by)) * (cy * ax - cx * ay) +
            (detail::squared(cx) + detail::squared(cy)) * (ay * bx - ax * by);
   }
 };

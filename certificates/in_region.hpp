@@ -28,6 +28,8 @@ struct OnSide {
   Motion<Degree> a, b;
   double sign;  ///< 1 or -1
 
+  bool is_negative_of(const OnSide& other) const { return sign == -other.sign && a == other.a && b == other.b; }
+
   template <class Number>
   auto polynomial(double epoch) const {
     return difference_about<Number>(b, a, epoch) * sign;
@@ -41,6 +43,10 @@ struct InBall {
   Path point, centre;
   Motion<Path::degree> radius;
   double sign;  ///< 1: inside; -1: outside
+
+  bool is_negative_of(const InBall& other) const {
+    return sign == -other.sign && point == other.point && centre == other.centre && radius == other.radius;
+  }
 
   template <class Number>
   auto polynomial(double epoch) const {

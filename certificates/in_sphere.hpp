@@ -6,6 +6,7 @@
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
+#include "kds/odd_permutation.hpp"
 
 namespace kds::certificates {
 
@@ -44,6 +45,10 @@ struct InSphere {
   /// Cheap and sufficient: two of the five are the same point.
   bool vanishes() const {
     return a == b || a == c || a == d || a == e || b == c || b == d || b == e || c == d || c == e || d == e;
+  }
+
+  bool is_negative_of(const InSphere& other) const {
+    return is_odd_permutation<Path, 5>({&a, &b, &c, &d, &e}, {&other.a, &other.b, &other.c, &other.d, &other.e});
   }
 
  private:

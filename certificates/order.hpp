@@ -18,7 +18,6 @@ namespace kds::certificates {
 template <int Degree>
 struct Order {
   static constexpr int degree = Degree;
-  static constexpr bool antisymmetric = true;
   const Motion<Degree>& lower;
   const Motion<Degree>& upper;
 
@@ -41,6 +40,8 @@ struct Order {
     }
     return at_rest || lower.start == upper.start;
   }
+
+  bool is_negative_of(const Order& other) const { return &lower == &other.upper && &upper == &other.lower; }
 
   struct RoughValue {
     double value;

@@ -5,6 +5,7 @@
 #include "kds/certificate.hpp"
 #include "kds/lasting.hpp"
 #include "kds/motion.hpp"
+#include "kds/odd_permutation.hpp"
 
 namespace kds::certificates {
 
@@ -34,6 +35,10 @@ struct Orientation {
 
   /// Cheap and sufficient: two of the three are the same point.
   bool vanishes() const requires(!requires { Path::sampled; }) { return a == b || b == c || c == a; }
+
+  bool is_negative_of(const Orientation& other) const {
+    return is_odd_permutation<Path, 3>({&a, &b, &c}, {&other.a, &other.b, &other.c});
+  }
 };
 
 template <class Path>

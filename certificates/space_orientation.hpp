@@ -4,6 +4,7 @@
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
+#include "kds/odd_permutation.hpp"
 
 #include <array>
 
@@ -33,6 +34,10 @@ struct SpaceOrientation {
 
   /// Cheap and sufficient: two of the four are the same point.
   bool vanishes() const { return a == b || a == c || a == d || b == c || b == d || c == d; }
+
+  bool is_negative_of(const SpaceOrientation& other) const {
+    return is_odd_permutation<Path, 4>({&a, &b, &c, &d}, {&other.a, &other.b, &other.c, &other.d});
+  }
 
  private:
   template <class From>
@@ -66,6 +71,10 @@ struct NormalDirection {
   }
 
   bool vanishes() const { return a == b || b == c || c == a; }
+
+  bool is_negative_of(const NormalDirection& other) const {
+    return axis == other.axis && is_odd_permutation<Path, 3>({&a, &b, &c}, {&other.a, &other.b, &other.c});
+  }
 
  private:
   template <class From>

@@ -57,15 +57,12 @@ concept AnswersQuicklyForTwo = requires(const C& certificate, double t) {
   { C::quick_failure_times(certificate, certificate, t, t) } -> std::same_as<TwoTimes>;
 };
 
-/// `static constexpr bool antisymmetric = true`: f is determined by the members `lower` and `upper`, which are
-/// references, and changes its sign when they are exchanged. So when it has failed, the certificate with the two
-/// exchanged is known to be positive, and its next failure is found at less cost (failure_time_after_turn()).
+/// `bool is_negative_of(const C& other) const`: cheap, and true only if f is minus the function of the other, at all
+/// times. So where the other has just failed, f is known to be positive, and its next failure is found at less cost
+/// (failure_time_after_turn()). What certificates refer to is compared by its address.
 template <class C>
-concept Antisymmetric = requires {
-  requires std::same_as<decltype(C::antisymmetric), const bool>;
-  requires C::antisymmetric;
-  requires std::is_lvalue_reference_v<decltype(C::lower)>;
-  requires std::same_as<decltype(C::lower), decltype(C::upper)>;
+concept TellsItsNegative = requires {
+  static_cast<bool (C::*)(const C&) const>(&C::is_negative_of);
 };
 
 namespace detail {
@@ -75,14 +72,7 @@ KDS_MEMBER_NAMED(NamesExtendedValue, extended_value);
 KDS_MEMBER_NAMED(NamesQuickFailureTime, quick_failure_time);
 KDS_MEMBER_NAMED(NamesQuickFailureTimeAfterTurn, quick_failure_time_after_turn);
 KDS_MEMBER_NAMED(NamesQuickFailureTimes, quick_failure_times);
-KDS_MEMBER_NAMED(NamesAntisymmetric, antisymmetric);
-
-/// A certificate may say `antisymmetric = false` and mean it.
-template <class C>
-concept SaysNotAntisymmetric = requires {
-  requires std::same_as<decltype(C::antisymmetric), const bool>;
-  requires !C::antisymmetric;
-};
+KDS_MEMBER_NAMED(NamesIsNegativeOf, is_negative_of);
 
 /// To be named wherever a hook is used: compiles only if all hooks that the certificate has are as their concepts ask.
 template <class C>
@@ -99,9 +89,8 @@ struct RightHooks {
   static_assert(AnswersQuicklyForTwo<C> || !NamesQuickFailureTimes<C>,
                 "certificate: `quick_failure_times` must be "
                 "`static TwoTimes quick_failure_times(const C& first, const C& second, double now, double horizon)`");
-  static_assert(Antisymmetric<C> || SaysNotAntisymmetric<C> || !NamesAntisymmetric<C>,
-                "certificate: `antisymmetric` must be `static constexpr bool`, and the certificate be given by the "
-                "references `lower` and `upper`, of one type");
+  static_assert(TellsItsNegative<C> || !NamesIsNegativeOf<C>,
+                "certificate: `is_negative_of` must be `bool is_negative_of(const C& other) const`");
   static constexpr bool checked = true;
 };
 

@@ -23,6 +23,8 @@ class Bracket {
   static constexpr Entrant nobody = std::numeric_limits<Entrant>::max();
 
   bool contains(Entrant entrant) const { return entrant < entrants_.size() && entrants_[entrant] != nobody; }
+  /// How many entrants there are.
+  std::size_t size() const { return size_; }
   /// Entrants are below this; matches are from 1 to below this.
   std::size_t capacity() const { return entrants_.size(); }
   Entrant winner() const { return capacity() == 0 ? nobody : winners_[1]; }
@@ -53,7 +55,7 @@ class Bracket {
   /// capacity().
   template <class Beats, class Played>
   void set(Entrant entrant, bool present, const Beats& beats, const Played& played) {
-    entrants_[entrant] = present ? entrant : nobody;
+    put(entrant, present);
     climb((capacity() + entrant) / 2, entrant, beats, played);
   }
 
@@ -78,7 +80,7 @@ class Bracket {
     std::size_t room = std::max<std::size_t>(capacity(), 2);
     while (room < most) room *= 2;
     entrants_.resize(room, nobody);
-    for (const Entrant entrant : entrants) entrants_[entrant] = present(entrant) ? entrant : nobody;
+    for (const Entrant entrant : entrants) put(entrant, present(entrant));
     if (grows) {
       winners_.assign(room, nobody);
       for (std::size_t match = room - 1; match >= 1; --match) play(match, beats, played);
@@ -125,6 +127,7 @@ class Bracket {
       for (std::size_t i = 0; i < entrants_.size(); ++i) {
         archive.require(entrants_[i] == i || entrants_[i] == nobody, "an entrant of a bracket is at another place");
       }
+      size_ = entrants_.size() - static_cast<std::size_t>(std::count(entrants_.begin(), entrants_.end(), nobody));
       for (std::size_t match = capacity(); match-- > 1;) {
         const Entrant left = winner(2 * match), right = winner(2 * match + 1), won = winner(match);
         archive.require((won == left || won == right) && (won != nobody || left == right),
@@ -134,6 +137,12 @@ class Bracket {
   }
 
  private:
+  void put(Entrant entrant, bool present) {
+    size_ += present;
+    size_ -= contains(entrant);
+    entrants_[entrant] = present ? entrant : nobody;
+  }
+
   template <class Beats, class Played>
   void play(std::size_t match, const Beats& beats, const Played& played) {
     const Entrant left = winner(2 * match);
@@ -148,6 +157,7 @@ class Bracket {
 
   std::vector<Entrant> entrants_;  ///< of a number: itself, or nobody
   std::vector<Entrant> winners_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace kds::structures

@@ -4,7 +4,7 @@
 #include "certificates/direction_order.hpp"
 #include "kds/audit.hpp"
 #include "kds/framework/kinetic.hpp"
-#include "structures/bracket.hpp"
+#include "structures/tournaments.hpp"
 
 #include <array>
 #include <cmath>
@@ -40,14 +40,18 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
 ///
 /// Ties: among points that stay equally far the one with the lowest id is the extreme one.
 template <class Path, std::size_t Dimension>
-class ExtentsRule {
+class ExtentsRule : public Tournaments<ExtentsRule<Path, Dimension>, Path> {
+  using Ends = Tournaments<ExtentsRule, Path>;
+  using Ends::contains, Ends::size, Ends::winner;
+
  public:
   using Element = Path;
   using Direction = std::array<double, Dimension>;
   static constexpr const char* name = "Extents";
 
   /// Throws std::invalid_argument for no direction, or one that is zero or not finite.
-  explicit ExtentsRule(std::vector<Direction> directions) : directions_(std::move(directions)) {
+  explicit ExtentsRule(std::vector<Direction> directions)
+      : Ends(2 * directions.size()), directions_(std::move(directions)) {
     if (directions_.empty()) throw std::invalid_argument("Extents: there must be a direction");
     for (const Direction& direction : directions_) {
       bool zero = true;
@@ -57,15 +61,14 @@ class ExtentsRule {
       }
       if (zero) throw std::invalid_argument("Extents: a direction must not be zero");
     }
-    brackets_.resize(2 * directions_.size());
   }
 
   const std::vector<Direction>& directions() const { return directions_; }
 
   /// The points that are farthest and least far in a direction, given by its number from 0, at t+; none if there are no
   /// points. Precondition: direction < directions().size().
-  std::optional<Id> foremost(std::size_t direction) const { return winner(2 * direction); }
-  std::optional<Id> hindmost(std::size_t direction) const { return winner(2 * direction + 1); }
+  std::optional<Id> foremost(std::size_t direction) const { return end(2 * direction); }
+  std::optional<Id> hindmost(std::size_t direction) const { return end(2 * direction + 1); }
 
   /// From least to greatest value of direction . point at t, rounded. Preconditions: there are points, and t is the
   /// clock or at least before the next event.
@@ -73,70 +76,42 @@ class ExtentsRule {
     return {value(direction, points[*hindmost(direction)], t), value(direction, points[*foremost(direction)], t)};
   }
 
-  // A slot is a match of one of the brackets: match * 2 m + bracket.
-  std::optional<certificates::DirectionOrder<Path, Dimension>> certificate(Slot slot, const MovingSet<Path>& x) const {
-    const auto [match, i] = place(slot);
-    if (!brackets_[i].two_play(match)) return std::nullopt;
-    return in_order(x[brackets_[i].loser(match)], x[brackets_[i].winner(match)], i);
-  }
-  std::array<Id, 2> members(Slot slot) const {
-    const auto [match, i] = place(slot);
-    return {brackets_[i].loser(match), brackets_[i].winner(match)};
+  /// Tournament 2 d is for the foremost point of direction d, 2 d + 1 for the hindmost.
+  certificates::DirectionOrder<Path, Dimension> better(Id i, Id j, std::size_t end, const MovingSet<Path>& x) const {
+    const Direction& direction = directions_[end / 2];
+    if (end % 2 == 0) return {x[j], x[i], direction};
+    return {x[i], x[j], direction};
   }
 
   Effect repair(Slot slot, Repair<Path>& repair) {
-    const auto [match, i] = place(slot);
-    const Id before = brackets_[i].winner();
-    brackets_[i].climb(match, nobody, beats(i, repair), marks(i, repair));
-    return brackets_[i].winner() != before ? Effect::external : Effect::internal;
+    return this->play(slot, repair) ? Effect::external : Effect::internal;
   }
-  void insert(Id id, Repair<Path>& repair) { set(id, true, repair); }
-  void remove(Id id, Repair<Path>& repair) { set(id, false, repair); }
-  void change(Id id, Repair<Path>& repair) { set(id, true, repair); }
+  void insert(Id id, Repair<Path>& repair) {
+    for (std::size_t i = 0; i < ends(); ++i) this->enter(id, i, repair);
+  }
+  void remove(Id id, Repair<Path>& repair) {
+    for (std::size_t i = 0; i < ends(); ++i) this->leave(id, i, repair);
+  }
+  void change(Id id, Repair<Path>& repair) { insert(id, repair); }
 
   void audit(const MovingSet<Path>& x, double /*now*/) const {
-    for (const Bracket& bracket : brackets_) {
-      bracket.audit(name);
+    this->audit_matches();
+    for (std::size_t i = 0; i < ends(); ++i) {
       for (Id id = 0; id < x.end_id(); ++id) {
-        if (bracket.contains(id) != x.contains(id)) throw AuditFailure("Extents: an entrant is missing or gone");
+        if (contains(id, i) != x.contains(id)) throw AuditFailure("Extents: an entrant is missing or gone");
       }
     }
   }
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(directions_, brackets_);
+    archive(directions_);
+    this->archive_matches(archive, ends());
   }
 
  private:
-  std::pair<std::size_t, std::size_t> place(Slot slot) const {
-    return {slot / brackets_.size(), slot % brackets_.size()};
-  }
-
-  std::optional<Id> winner(std::size_t bracket) const {
-    const Id id = brackets_[bracket].winner();
-    return id == nobody ? std::nullopt : std::optional(id);
-  }
-
-  /// "The loser is not before the winner": even brackets ask for the foremost, odd ones for the hindmost.
-  certificates::DirectionOrder<Path, Dimension> in_order(const Path& loser, const Path& winner, std::size_t i) const {
-    const Direction& direction = directions_[i / 2];
-    if (i % 2 == 0) return {loser, winner, direction};
-    return {winner, loser, direction};
-  }
-  auto beats(std::size_t i, const Repair<Path>& repair) const {
-    return [this, i, &repair](Id left, Id right) { return repair.sign(in_order(repair[right], repair[left], i)) >= 0; };
-  }
-  auto marks(std::size_t i, Repair<Path>& repair) const {
-    return [this, i, &repair](std::size_t match) { repair.certify(static_cast<Slot>(match * brackets_.size() + i)); };
-  }
-
-  void set(Id id, bool present, Repair<Path>& repair) {
-    for (std::size_t i = 0; i < brackets_.size(); ++i) {
-      brackets_[i].reserve(id + std::size_t{1}, beats(i, repair), marks(i, repair));
-      brackets_[i].set(id, present, beats(i, repair), marks(i, repair));
-    }
-  }
+  std::size_t ends() const { return 2 * directions_.size(); }
+  std::optional<Id> end(std::size_t i) const { return size(i) == 0 ? std::nullopt : std::optional<Id>(winner(i)); }
 
   double value(std::size_t direction, const Path& path, double t) const {
     double sum = 0;
@@ -145,7 +120,6 @@ class ExtentsRule {
   }
 
   std::vector<Direction> directions_;
-  std::vector<Bracket> brackets_;
 };
 
 }  // namespace kds::structures

@@ -1,14 +1,13 @@
-// Event queue in buckets of time: a calendar whose days adapt to the events in it.
+// Event queue in buckets of time: a calendar whose days adapt to the events in it. calendar_queue_years.hpp has the
+// turn of its days and years.
 #pragma once
 
 #include "kds/events/event_queue.hpp"
 #include "kds/large_vector.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cassert>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -17,14 +16,18 @@
 
 namespace kds {
 
-/// A calendar queue: amortised O(1) for set, clear and pop, without allocation after resize(). At most `most_slots`:
-/// resize() throws std::length_error for more, and then changes nothing.
+/// A calendar queue: amortised O(1) for set, clear and pop. At most `most_slots`: resize() throws std::length_error for
+/// more, and then changes nothing.
+///
+/// Each slot that has an event has a record, which is used again when the event is over. So a slot without event takes
+/// four bytes, and slots may be numbered sparsely; a record takes 52 to 68, and 8 more with ranks. set() allocates
+/// where more slots have events than ever before, resize() for its slots, and nothing else does.
 ///
 /// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
-/// years to come. A day is an unsorted, doubly linked list of its slots, so that set and clear touch a constant number
-/// of words. Only the events of the present day, and any set to a time before it, stand in order, in a small heap. When
-/// the last day is over, the events to come are dealt out into a new year, whose days are as long as the distance
-/// between the events then nearest.
+/// years to come. A day is an unsorted, doubly linked list of its records, so that set and clear touch a constant
+/// number of words. Only the events of the present day, and any set to a time before it, stand in order, in a small
+/// heap. When the last day is over, the events to come are dealt out into a new year, whose days are as long as the
+/// distance between the events then nearest.
 ///
 /// The division into days is monotone in time even as it is rounded (a subtraction and a multiplication by a positive
 /// number, each monotone), so the order is exact whatever the length of a day. An unlucky distribution only costs time:
@@ -49,15 +52,14 @@ class CalendarQueue {
   template <class Visit>
   void visit_until(double time, Visit&& visit) const;
 
-  bool contains(Slot slot) const { return time(slot) != detail::no_event; }
-  double time(Slot slot) const { return nodes_[slot].time; }
+  bool contains(Slot slot) const { return records_[slot] != none; }
+  double time(Slot slot) const { return contains(slot) ? nodes_[records_[slot]].time : detail::no_event; }
   bool empty() const { return size_ == 0; }
   std::size_t size() const { return size_; }
-  std::size_t slots() const { return nodes_.size(); }
+  std::size_t slots() const { return records_.size(); }
   std::uint64_t operations() const { return operations_; }
 
  private:
-  using Key = detail::QueueKey<Rank>;
   static constexpr bool has_ranks = !std::is_same_v<Rank, SlotRank>;
 
   // These change the speed, never the order.
@@ -67,8 +69,8 @@ class CalendarQueue {
   static constexpr std::size_t sample_size = 256;   ///< events looked at for that, at most
   static constexpr std::size_t long_day = 16;       ///< events; the cost of longer days is counted, see bill_
 
-  // The meaning of Node::back: the slot before, or the day whose first slot this is, or the place in the present day's
-  // heap.
+  // The meaning of Node::back: the record before, or the day whose first record this is, or the place in the present
+  // day's heap.
   static constexpr std::uint32_t first_of_day = 1u << 30;
   static constexpr std::uint32_t in_present = 1u << 31;
   static constexpr std::uint32_t payload = first_of_day - 1;
@@ -85,28 +87,38 @@ class CalendarQueue {
     std::uint32_t back = 0;
   };
 
-  Key key(Slot slot) const {
+  /// An entry of the present day's heap.
+  struct Due {
+    double time;
+    Slot slot;
+    std::uint32_t record;
+  };
+
+  /// The order of the queue.
+  bool earlier(const Due& a, const Due& b) const {
+    if (a.time != b.time) return a.time < b.time;
     if constexpr (has_ranks) {
-      return {nodes_[slot].time, ranks_[slot], slot};
-    } else {
-      return {nodes_[slot].time, slot};
+      if (ranks_[a.record] != ranks_[b.record]) return ranks_[a.record] < ranks_[b.record];
     }
+    return a.slot < b.slot;
   }
 
+  std::uint32_t take_record() { return free_ != none ? std::exchange(free_, nodes_[free_].next) : add_record(); }
+  std::uint32_t add_record();
   void drop(Slot slot);
-  void insert(Slot slot) const;
-  void remove(Slot slot) const;
-  void link(Slot slot, std::uint32_t day) const;
+  void insert(std::uint32_t record) const;
+  void remove(std::uint32_t record) const;
+  void link(std::uint32_t record, std::uint32_t day) const;
   void link_all(std::uint32_t first, std::uint32_t day) const;
   std::uint32_t take_day(std::uint32_t day) const;
 
-  void push_present(Slot slot) const;
+  void push_present(std::uint32_t record) const;
   void erase_present(std::size_t place) const;
-  void sift_up(std::size_t place, const Key& key) const;
-  void sift_down(std::size_t place, const Key& key) const;
-  void put(std::size_t place, const Key& key) const {
-    present_[place] = key;
-    nodes_[key.slot].back = in_present | static_cast<std::uint32_t>(place);
+  void sift_up(std::size_t place, const Due& moved) const;
+  void sift_down(std::size_t place, const Due& moved) const;
+  void put(std::size_t place, const Due& due) const {
+    present_[place] = due;
+    nodes_[due.record].back = in_present | static_cast<std::uint32_t>(place);
   }
 
   void next_day() const;
@@ -117,10 +129,10 @@ class CalendarQueue {
   double day_length(double& earliest) const;
 
   // Mutable: top() may open the next day or year, which changes nothing that callers can see.
-  mutable LargeVector<Node> nodes_;          // by slot
-  mutable LargeVector<std::uint32_t> days_;  // first slot of each day; days_[year_] is that of the years to come
+  mutable LargeVector<Node> nodes_;          // by record
+  mutable LargeVector<std::uint32_t> days_;  // first record of each day; days_[year_] is that of the years to come
   mutable std::vector<std::uint64_t> busy_;  // a bit for each of days_ that is not empty
-  mutable LargeVector<Key> present_;         // binary heap, least first
+  mutable LargeVector<Due> present_;         // binary heap, least first
   mutable std::uint32_t year_ = 0;           // days in this year
   mutable std::uint32_t today_ = 0;
   mutable double begin_ = 0;            // time at which the year begins
@@ -129,8 +141,11 @@ class CalendarQueue {
   // years to come, as all events do at first.
   mutable double tomorrow_ = -detail::no_event;
   mutable double year_end_ = -detail::no_event;
-  mutable std::size_t bill_ = 0;  // cost of long days, in slots; beyond the number of events a new year is begun
-  LargeVector<std::uint64_t> ranks_;  // by slot, as they were when it was set; empty for SlotRank
+  mutable std::size_t bill_ = 0;        // cost of long days, in events; beyond the number of events a new year is begun
+  LargeVector<std::uint32_t> records_;  // by slot
+  LargeVector<Slot> slots_;             // by record
+  LargeVector<std::uint64_t> ranks_;    // by record, as they were when it was set; empty for SlotRank
+  std::uint32_t free_ = none;           // first of the records of no slot, linked by `next`
   std::size_t size_ = 0;
   std::uint64_t operations_ = 0;
   [[no_unique_address]] Rank rank_;
@@ -144,14 +159,22 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
     throw std::length_error("CalendarQueue::resize: " + std::to_string(slots) + " slots, and it can have at most " +
                             std::to_string(most_slots));
   }
-  for (std::size_t slot = slots; slot < nodes_.size(); ++slot) {
+  for (std::size_t slot = slots; slot < records_.size(); ++slot) {
     if (contains(static_cast<Slot>(slot))) drop(static_cast<Slot>(slot));
   }
-  nodes_.resize(slots);
-  if constexpr (has_ranks) ranks_.resize(slots);
-  present_.reserve(nodes_.capacity());  // grows with it, not by one slot at a time
-  const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * slots, 64));
-  if (days + 1 <= days_.size()) return;
+  records_.resize(slots, none);
+}
+
+/// Not inlined, since set() rarely needs it.
+template <QueueRank Rank>
+[[gnu::noinline]] std::uint32_t CalendarQueue<Rank>::add_record() {
+  const auto record = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  slots_.resize(nodes_.size());
+  if constexpr (has_ranks) ranks_.resize(nodes_.size());
+  present_.reserve(nodes_.capacity());  // grows with it, not by one record at a time
+  const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * nodes_.size(), 64));
+  if (days + 1 <= days_.size()) return record;
   const bool used = !days_.empty();
   if (used) end_year();
   const std::uint32_t waiting = used ? take_day(year_) : none;
@@ -160,21 +183,26 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
   link_all(waiting, year_);
   // So that events set before the next year begins do not belong to the present day.
   tomorrow_ = year_end_ = -detail::no_event;
+  return record;
 }
 
 template <QueueRank Rank>
 inline void CalendarQueue<Rank>::set(Slot slot, double time) {
-  assert(slot < nodes_.size() && time > -detail::no_event);
+  assert(slot < records_.size() && time > -detail::no_event);
   if (time == detail::no_event) return clear(slot);
-  ++operations_;
-  if (contains(slot)) {
-    remove(slot);
+  std::uint32_t record = records_[slot];
+  if (record != none) {
+    remove(record);
   } else {
+    record = take_record();
+    records_[slot] = record;
+    slots_[record] = slot;
     ++size_;
   }
-  nodes_[slot].time = time;
-  if constexpr (has_ranks) ranks_[slot] = rank_(slot);
-  insert(slot);
+  ++operations_;
+  nodes_[record].time = time;
+  if constexpr (has_ranks) ranks_[record] = rank_(slot);
+  insert(record);
 }
 
 template <QueueRank Rank>
@@ -187,9 +215,10 @@ inline void CalendarQueue<Rank>::clear(Slot slot) {
 /// Precondition: contains(slot).
 template <QueueRank Rank>
 inline void CalendarQueue<Rank>::drop(Slot slot) {
+  const std::uint32_t record = std::exchange(records_[slot], none);
   --size_;
-  remove(slot);
-  nodes_[slot].time = detail::no_event;
+  remove(record);
+  nodes_[record].next = std::exchange(free_, record);
 }
 
 template <QueueRank Rank>
@@ -202,8 +231,8 @@ inline QueuedEvent CalendarQueue<Rank>::top() const {
 template <QueueRank Rank>
 template <class Visit>
 void CalendarQueue<Rank>::visit_until(double time, Visit&& visit) const {
-  for (const Key& key : present_) {
-    if (key.time <= time) visit(key.slot);
+  for (const Due& due : present_) {
+    if (due.time <= time) visit(due.slot);
   }
   // Events up to then are not on later days, as the division into days is monotone.
   const double last = (time - begin_) * days_per_second_;
@@ -211,8 +240,8 @@ void CalendarQueue<Rank>::visit_until(double time, Visit&& visit) const {
     for (std::uint64_t days = busy_[word]; days != 0; days &= days - 1) {
       const auto day = static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(days)));
       if (day == year_ ? last < year_end_ : last < day) return;
-      for (std::uint32_t slot = days_[day]; slot != none; slot = nodes_[slot].next) {
-        if (nodes_[slot].time <= time) visit(slot);
+      for (std::uint32_t record = days_[day]; record != none; record = nodes_[record].next) {
+        if (nodes_[record].time <= time) visit(slots_[record]);
       }
       if (day == year_) return;
     }
@@ -222,10 +251,10 @@ void CalendarQueue<Rank>::visit_until(double time, Visit&& visit) const {
 // --- where an event stands
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::insert(Slot slot) const {
-  const double day = (nodes_[slot].time - begin_) * days_per_second_;
-  if (day >= tomorrow_) return link(slot, day < year_end_ ? static_cast<std::uint32_t>(day) : year_);
-  push_present(slot);
+inline void CalendarQueue<Rank>::insert(std::uint32_t record) const {
+  const double day = (nodes_[record].time - begin_) * days_per_second_;
+  if (day >= tomorrow_) return link(record, day < year_end_ ? static_cast<std::uint32_t>(day) : year_);
+  push_present(record);
   if (present_.size() > long_day && ++bill_ > size_) {
     end_year();
     begin_year();
@@ -233,8 +262,8 @@ inline void CalendarQueue<Rank>::insert(Slot slot) const {
 }
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::remove(Slot slot) const {
-  const Node node = nodes_[slot];
+inline void CalendarQueue<Rank>::remove(std::uint32_t record) const {
+  const Node node = nodes_[record];
   if (node.back & in_present) return erase_present(node.back & payload);
   if (node.next != none) nodes_[node.next].back = node.back;
   if (node.back & first_of_day) {
@@ -247,21 +276,21 @@ inline void CalendarQueue<Rank>::remove(Slot slot) const {
 }
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::link(Slot slot, std::uint32_t day) const {
+inline void CalendarQueue<Rank>::link(std::uint32_t record, std::uint32_t day) const {
   const std::uint32_t next = days_[day];
-  nodes_[slot].next = next;
-  nodes_[slot].back = first_of_day | day;
-  if (next != none) nodes_[next].back = slot;
-  days_[day] = slot;
+  nodes_[record].next = next;
+  nodes_[record].back = first_of_day | day;
+  if (next != none) nodes_[next].back = record;
+  days_[day] = record;
   busy_[day / 64] |= std::uint64_t{1} << (day % 64);
 }
 
 template <QueueRank Rank>
 void CalendarQueue<Rank>::link_all(std::uint32_t first, std::uint32_t day) const {
-  for (std::uint32_t slot = first; slot != none;) link(std::exchange(slot, nodes_[slot].next), day);
+  for (std::uint32_t record = first; record != none;) link(std::exchange(record, nodes_[record].next), day);
 }
 
-/// Empties a day; the first of its slots, which are still linked to one another.
+/// Empties a day; the first of its records, which are still linked to one another.
 template <QueueRank Rank>
 inline std::uint32_t CalendarQueue<Rank>::take_day(std::uint32_t day) const {
   busy_[day / 64] &= ~(std::uint64_t{1} << (day % 64));
@@ -271,18 +300,18 @@ inline std::uint32_t CalendarQueue<Rank>::take_day(std::uint32_t day) const {
 // --- the heap of the present day
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::push_present(Slot slot) const {
-  const Key added = key(slot);
+inline void CalendarQueue<Rank>::push_present(std::uint32_t record) const {
+  const Due added{nodes_[record].time, slots_[record], record};
   present_.push_back(added);
   sift_up(present_.size() - 1, added);
 }
 
 template <QueueRank Rank>
 inline void CalendarQueue<Rank>::erase_present(std::size_t place) const {
-  const Key last = present_.back();
+  const Due last = present_.back();
   present_.pop_back();
   if (place == present_.size()) return;
-  if (place > 0 && last < present_[(place - 1) / 2]) {
+  if (place > 0 && earlier(last, present_[(place - 1) / 2])) {
     sift_up(place, last);
   } else {
     sift_down(place, last);
@@ -290,10 +319,10 @@ inline void CalendarQueue<Rank>::erase_present(std::size_t place) const {
 }
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::sift_up(std::size_t place, const Key& moved) const {
+inline void CalendarQueue<Rank>::sift_up(std::size_t place, const Due& moved) const {
   while (place > 0) {
     const std::size_t parent = (place - 1) / 2;
-    if (!(moved < present_[parent])) break;
+    if (!earlier(moved, present_[parent])) break;
     put(place, present_[parent]);
     place = parent;
   }
@@ -301,95 +330,20 @@ inline void CalendarQueue<Rank>::sift_up(std::size_t place, const Key& moved) co
 }
 
 template <QueueRank Rank>
-inline void CalendarQueue<Rank>::sift_down(std::size_t place, const Key& moved) const {
+inline void CalendarQueue<Rank>::sift_down(std::size_t place, const Due& moved) const {
   for (;;) {
     std::size_t child = 2 * place + 1;
     if (child >= present_.size()) break;
-    if (child + 1 < present_.size() && present_[child + 1] < present_[child]) ++child;
-    if (!(present_[child] < moved)) break;
+    if (child + 1 < present_.size() && earlier(present_[child + 1], present_[child])) ++child;
+    if (!earlier(present_[child], moved)) break;
     put(place, present_[child]);
     place = child;
   }
   put(place, moved);
 }
 
-// --- the turn of days and years
-
-/// Opens the next day that has an event. Precondition: the present day is empty, the queue is not.
-template <QueueRank Rank>
-void CalendarQueue<Rank>::next_day() const {
-  if (bill_ > size_) end_year();
-  const std::uint32_t day = next_busy_day();
-  if (day == year_) return begin_year();
-  open_day(day);
-  if (present_.size() > long_day) bill_ += present_.size();
-}
-
-template <QueueRank Rank>
-void CalendarQueue<Rank>::open_day(std::uint32_t day) const {
-  today_ = day;
-  tomorrow_ = day + 1.0;
-  for (std::uint32_t slot = take_day(day); slot != none;) push_present(std::exchange(slot, nodes_[slot].next));
-}
-
-/// The next day with events, or year_ (the years to come) if there is none. Precondition: the queue is not empty.
-template <QueueRank Rank>
-inline std::uint32_t CalendarQueue<Rank>::next_busy_day() const {
-  std::size_t word = today_ / 64;
-  while (busy_[word] == 0) ++word;  // the bits of days gone by are clear
-  return static_cast<std::uint32_t>(64 * word + static_cast<std::size_t>(std::countr_zero(busy_[word])));
-}
-
-/// Sends all events, of the present day too, to the years to come.
-template <QueueRank Rank>
-void CalendarQueue<Rank>::end_year() const {
-  for (const Key& key : present_) link(key.slot, year_);
-  present_.clear();
-  if (size_ == 0) return;
-  for (std::uint32_t day = next_busy_day(); day != year_; day = next_busy_day()) {
-    today_ = day;
-    link_all(take_day(day), year_);
-  }
-}
-
-/// Deals the events of the years to come, which are all there are, out into a year, and opens its first day.
-template <QueueRank Rank>
-void CalendarQueue<Rank>::begin_year() const {
-  const double length = day_length(begin_);
-  days_per_second_ = std::clamp(1 / length, std::numeric_limits<double>::min(), std::numeric_limits<double>::max());
-  std::uint32_t slot = take_day(year_);
-  const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * size_, 64));
-  year_ = static_cast<std::uint32_t>(std::min(days, days_.size() - 1));
-  tomorrow_ = 0;
-  year_end_ = year_;
-  bill_ = 0;
-  while (slot != none) insert(std::exchange(slot, nodes_[slot].next));
-  open_day(0);
-}
-
-/// How long a day should be for the events of the years to come; finds the earliest on the way.
-template <QueueRank Rank>
-double CalendarQueue<Rank>::day_length(double& earliest) const {
-  std::array<double, sample_size> sample;
-  const std::size_t stride = (size_ + sample_size - 1) / sample_size;
-  std::size_t seen = 0;
-  earliest = detail::no_event;
-  for (std::uint32_t slot = days_[year_]; slot != none; slot = nodes_[slot].next, ++seen) {
-    const double time = nodes_[slot].time;
-    earliest = std::min(earliest, time);
-    if (seen % stride == 0) sample[seen / stride] = time;
-  }
-  const auto begin = sample.begin();
-  const auto end = begin + static_cast<std::ptrdiff_t>((seen + stride - 1) / stride);
-  std::sort(begin, end);
-  // So many events that one burst at the beginning does not decide the length.
-  const auto near = std::max(begin + (end - begin - 1) / static_cast<std::ptrdiff_t>(near_part),
-                             std::upper_bound(begin, end, earliest));
-  if (near == end) return 1;  // the sample is all at one time
-  const double events = static_cast<double>(near - begin + 1) * static_cast<double>(stride);
-  return events_per_day * (*near - earliest) / events;
-}
-
-static_assert(EventQueue<CalendarQueue<>>);
-
 }  // namespace kds
+
+#include "kds/events/calendar_queue_years.hpp"
+
+static_assert(kds::EventQueue<kds::CalendarQueue<>>);

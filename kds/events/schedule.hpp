@@ -80,8 +80,8 @@ class Schedule {
     }
   }
 
-  /// The same for a certificate that is known to be positive just after now: that of two elements which have swapped,
-  /// since their order, of which it is the negative, has failed. See failure_time_after_turn().
+  /// The same for a certificate that is known to be positive just after now, since its negative has failed. See
+  /// failure_time_after_turn().
   template <Certificate C>
   void certify_turned(Slot slot, const C& certificate, double now) {
     static_assert(AnswersAfterTurn<Solver, C> || !detail::NamesAfterTurn<Solver>,

@@ -5,7 +5,6 @@
 
 #include "kds/audit.hpp"
 #include "kds/events/schedule.hpp"
-#include "kds/framework/failed_order.hpp"
 #include "kds/framework/kinetic_rule.hpp"
 
 #include <algorithm>
@@ -61,6 +60,7 @@ class Kinetic final : public KineticOf<Rule>,
                       private MovingSet<typename Rule::Element>::Observer,
                       private detail::Follower {
   using Standing = detail::Standing<Rule>;
+  using Choice = typename detail::CertificateOf<Rule>::type;
   static constexpr bool is_outer = OuterRule<Rule>;
   static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
   static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
@@ -97,8 +97,7 @@ class Kinetic final : public KineticOf<Rule>,
 
   /// Takes up the elements that the set has at the time `now`, which is the clock: finite, and not before the last edit
   /// (neither is checked). The set must outlive the structure.
-  explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {})
-  requires(!is_outer)
+  explicit Kinetic(MovingSet<Element>& elements, double now, Rule rule = {}, Listener listener = {}) requires(!is_outer)
       : KineticOf<Rule>(elements, std::move(rule)), listener_(std::move(listener)), backwards_(elements.backwards()) {
     build(now);
   }
@@ -214,13 +213,19 @@ class Kinetic final : public KineticOf<Rule>,
   void certify(Slot slot, bool in_event);
   void hold(Slot slot, bool held);
 
-  /// Whether the slot on top is due for a failure: not for a sample, and not too early.
-  bool failed(Slot slot, double time, bool counts = true);
+  /// Whether the slot on top, which has this certificate, is due for a failure: not for a sample, and not too early.
+  bool failed(Slot slot, const Choice& choice, double time, bool counts = true);
   /// Whether a certificate is the negative of the one that has just failed, and so known to be positive at t+.
   template <class C>
   bool has_turned(const C& certificate) const {
-    if constexpr (Antisymmetric<C>) return detail::Ordered::by(certificate) == crossed_.turned();
-    return false;
+    bool turned = false;
+    if constexpr (TellsItsNegative<C>) {
+      if (failed_ == nullptr) return false;
+      detail::with_certificate(*failed_, [&](const auto& failed) {
+        if constexpr (std::same_as<decltype(failed), const C&>) turned = certificate.is_negative_of(failed);
+      });
+    }
+    return turned;
   }
 
   // With sampled elements: kinetic_samples.hpp.
@@ -242,16 +247,16 @@ class Kinetic final : public KineticOf<Rule>,
   Schedule<Queue, Solver> schedule_;
   std::vector<std::uint8_t> held_;  ///< whether a slot has a certificate
   Measures measures_;
-  double last_ = -never;     ///< of the last change
-  detail::Ordered crossed_;  ///< the two whose order failed in the event that is processed
+  double last_ = -never;            ///< of the last change
+  const Choice* failed_ = nullptr;  ///< the certificate that failed in the event that is processed
   bool busy_ = false;
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
   double repaired_at_ = -never;
   std::uint64_t repairs_ = 0;  ///< at that time, since the last edit
   typename Standing::Structure* inner_ = nullptr;
-  std::uint64_t followed_reports_ = 0;   ///< of the structure that it stands on
-  std::vector<KineticEvent> untold_;  ///< events that were followed, of which the listener has not heard
+  std::uint64_t followed_reports_ = 0;  ///< of the structure that it stands on
+  std::vector<KineticEvent> untold_;    ///< events that were followed, of which the listener has not heard
 };
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -259,14 +264,16 @@ class Kinetic final : public KineticOf<Rule>,
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process() {
   const auto [time, slot] = schedule_.next();
+  const Choice certificate = rule_.certificate(slot, elements_);
   KineticEvent event{time, slot, Effect::internal};
-  if (!failed(slot, time)) {
+  if (!failed(slot, certificate, time)) {
     if constexpr (!Sampled<Element>) return;
     sample_again(slot, time);
   } else {
     require_inner_first(time);
     count_repair(slot, time);
     begin(time);
+    failed_ = &certificate;
     event.effect = rule_.repair(slot, repair_);
     repair_.certify(slot);
     count_touched();
@@ -309,7 +316,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
   }
   repair_.marked_.clear();
   if (!in_event) repairs_ = 0;
-  crossed_ = {};
+  failed_ = nullptr;
   tell_followers(in_event);
   measures_.most_held = std::max(measures_.most_held, measures_.held);
   busy_ = false;
@@ -325,7 +332,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::certify(Slot slot, bool in_event) {
     } else {
       if (in_event) schedule_.look_for_late_events(certificate, last_);
       if (in_event && has_turned(certificate)) {
-        assert(sign_after(certificate, last_) > 0);  // else not antisymmetric, or a slot was not marked
+        assert(sign_after(certificate, last_) > 0);  // else not the negative, or a slot was not marked
         schedule_.certify_turned(slot, certificate, last_);
       } else {
         schedule_.certify(slot, certificate, last_);
@@ -344,18 +351,15 @@ void Kinetic<Rule, Listener, Queue, Solver>::hold(Slot slot, bool held) {
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, double time, bool counts) {
+bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, const Choice& choice, double time, bool counts) {
   if constexpr (Sampled<Element> && !MovingSample<Element>) return false;  // Samples at rest never fail.
   bool failed = false;
-  detail::with_certificate(rule_.certificate(slot, elements_), [&](const auto& certificate) {
+  detail::with_certificate(choice, [&](const auto& certificate) {
     if constexpr (MovingSample<Element>) {
       const OfSamples<std::remove_cvref_t<decltype(certificate)>> of_samples{certificate};
       failed = sign_after(of_samples, time) < 0 && (!counts || schedule_.failed(slot, of_samples, time));
     } else if constexpr (!Sampled<Element>) {
       failed = schedule_.failed(slot, certificate, time);
-      if constexpr (Antisymmetric<std::remove_cvref_t<decltype(certificate)>>) {
-        if (failed) crossed_ = detail::Ordered::by(certificate);
-      }
     }
   });
   return failed;

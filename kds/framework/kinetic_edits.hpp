@@ -108,7 +108,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::process_own_due(double now) {
   while (next_time() <= now) {
     const Slot slot = schedule_.next().slot;
     if constexpr (MovingSample<Element>) {
-      if (!failed(slot, now, false)) {
+      if (!failed(slot, rule_.certificate(slot, elements_), now, false)) {
         waiting.slots.push_back(slot);
         schedule_.set(slot, never);
         continue;

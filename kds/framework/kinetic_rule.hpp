@@ -63,14 +63,17 @@ concept TellsItsState = requires(const R& rule) {
 };
 
 template <class R>
-struct CertificateOf {};
+struct CertificateOf {
+  using type = std::monostate;
+};
 template <class R>
 requires requires(const R& rule, Slot slot, const MovingSet<typename R::Element>& elements) {
   rule.certificate(slot, elements);
 }
 struct CertificateOf<R> {
-  static constexpr bool checked = RightCertificate<std::remove_cvref_t<decltype(
-      std::declval<const R&>().certificate(Slot{}, std::declval<const MovingSet<typename R::Element>&>()))>>::checked;
+  using type = std::remove_cvref_t<decltype(std::declval<const R&>().certificate(
+      Slot{}, std::declval<const MovingSet<typename R::Element>&>()))>;
+  static constexpr bool checked = RightCertificate<type>::checked;
 };
 
 }  // namespace detail
@@ -99,8 +102,7 @@ struct CertificateOf<R> {
 /// these functions edits the elements or throws (except audit(), and when memory is exhausted).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-    detail::NamesMembers<R> && detail::Repairs<R> &&
-    (detail::Follows<R> || (detail::Inserts<R> && detail::Removes<R>));
+    detail::NamesMembers<R> && detail::Repairs<R> &&(detail::Follows<R> || (detail::Inserts<R> && detail::Removes<R>));
 
 /// `void change(Id id, Repair<Element>& repair)`: take up a new motion of an element. Without it: remove and insert.
 template <class R>

@@ -38,8 +38,8 @@ namespace kds {
 ///    may be a double itself. Any certificate. By the degree that the polynomial really has:
 ///      1          a quotient, failure_time_linear.hpp
 ///      2          the quadratic formula, failure_time_quadratic.hpp. 30 ns
-///      3 to 8     the rule of Descartes and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to
-///                 300 ns
+///      3 and more the rule of Descartes and Halley's method, first_crossing.hpp and failure_time_isolated.hpp. 120 to
+///                 300 ns up to degree 8
 /// 3. Exact signs of f and its derivatives on the lattice of doubles (DerivativeIntervals, failure_time_by_signs.hpp):
 ///    certificates that touch zero, or nearly, and clustered roots. Needs no assumptions. 2 to 70 us, the most for
 ///    clustered roots of a high degree; counted by sign_counters.searches.

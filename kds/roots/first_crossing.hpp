@@ -22,7 +22,7 @@ struct Crossing {
   enum class Status {
     none,      ///< certified: the polynomial is >= 0 on (0, end]
     isolated,  ///< certified: > 0 on (0, after], and one sign change, from + to -, in (after, before)
-    undecided  ///< doubles do not decide
+    undecided  ///< certified: >= 0 on (0, after]; beyond that doubles do not decide
   };
   Status status;
   double after = 0;   ///< rounded: the ends meant are within 2^-44 of their size
@@ -263,7 +263,7 @@ class CrossingSearch {
         --last_;
         continue;
       }
-      if (++cuts > most_cuts || piece.drowned()) return {Crossing::Status::undecided};
+      if (++cuts > most_cuts || piece.drowned()) return {Crossing::Status::undecided, x(piece.begin)};
       piece.cut(std::clamp(piece.dip(), nearest_cut, 1 - nearest_cut), pieces_[++last_]);
     }
   }

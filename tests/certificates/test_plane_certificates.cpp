@@ -98,6 +98,35 @@ TEST_CASE("orientation and in-circle have the symmetries they state", "[plane]")
   CHECK(wrong == 0);
 }
 
+TEST_CASE("failure times of in-circle tests of cubics are right, and need no search by exact signs", "[plane]") {
+  const std::uint64_t seed = 165;
+  CAPTURE(seed);
+  Random random(seed);
+  using Path = PlaneMotion<3>;
+  int wrong = 0, failures = 0;
+  std::uint64_t searches = 0;
+  for (int round = 0; round < 2000; ++round) {
+    // Points near each other: roots near now, and far ones by the speeds.
+    std::array<Path, 4> paths;
+    for (Path& path : paths) {
+      for (auto& coordinate : path.coordinate) {
+        coordinate.c = {random.unit() / 8, random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)};
+      }
+    }
+    const auto& [a, b, c, d] = paths;
+    const InCircle<Path> outside{a, b, c, d};
+    const double horizon = random.one_in(2) ? never : random.between(0, 2);
+    sign_counters = {};
+    const double t = failure_time(outside, 0, horizon);
+    searches += sign_counters.searches;
+    failures += t > 0 && t < never;
+    wrong += t != detail::failure_time_by_signs(CertificateReference(outside), 0, horizon);
+  }
+  CHECK(wrong == 0);
+  CHECK(failures > 500);
+  CHECK(searches <= 1);
+}
+
 TEST_CASE("a point enters a circle, three points come to one line", "[plane]") {
   const auto at = [](double x, double y, double speed = 0) { return PlaneMotion<1>{{{{{x, speed}}, {{y, 0}}}}, 0}; };
   const auto a = at(1, 0), b = at(0, 1), c = at(-1, 0);

@@ -47,7 +47,7 @@ struct Talkative {
 
 // What a certificate may know of itself; tests/kds/misuse/broken_hooks.cc has what must not compile.
 static_assert(TellsIfItVanishes<Value<3>> && GivesExtendedValue<Value<3>> && AnswersQuickly<Value<3>>);
-static_assert(AnswersQuicklyAfterTurn<Value<3>> && !AnswersQuicklyForTwo<Value<3>> && !Antisymmetric<Value<3>>);
+static_assert(AnswersQuicklyAfterTurn<Value<3>> && !AnswersQuicklyForTwo<Value<3>> && !TellsItsNegative<Value<3>>);
 static_assert(TellsIfItVanishes<Talkative> && !GivesExtendedValue<Talkative> && !AnswersQuickly<Talkative>);
 static_assert(!AnswersQuicklyAfterTurn<Talkative> && !TellsIfItVanishes<Above> && detail::RightHooks<Above>::checked);
 
@@ -69,12 +69,6 @@ static_assert(detail::NamesVanishes<Private> && !detail::NamesVanishes<Above>);
 static_assert(!detail::NamesQuickFailureTime<Final> && !detail::NamesQuickFailureTime<Private>);
 static_assert(!TellsIfItVanishes<Overloaded> && !TellsIfItVanishes<Final> && !TellsIfItVanishes<Private>);
 static_assert(!detail::NamesVanishes<int>);
-
-/// What is said not to be antisymmetric is not, and right.
-struct Symmetric : Value<1> {
-  static constexpr bool antisymmetric = false;
-};
-static_assert(!Antisymmetric<Symmetric> && detail::RightHooks<Symmetric>::checked);
 
 /// The sign of derivative `order` at t+, over the rationals.
 template <int Degree>

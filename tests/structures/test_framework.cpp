@@ -1,14 +1,19 @@
 // The framework, with the list of the examples: against the exact order, with edits and audits.
+#include "certificates/plane_certificates.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
+#include "structures/delaunay.hpp"
 #include "structures/sorted_list.hpp"
 #include "tests/structures/logged_lists.hpp"
 #include "tests/structures/random_values.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <array>
+#include <cstdint>
 #include <stdexcept>
+#include <variant>
 #include <vector>
 
 namespace test_framework {
@@ -77,17 +82,85 @@ TEMPLATE_TEST_CASE_SIG("a list in forty lines is in exact order after every even
   }
 }
 
-TEST_CASE("what is known after a failure is of the same kind of certificate, of the same two", "[framework]") {
-  using certificates::Order;
-  struct Above : Order<1> {};  // some other order of the same elements
-  const Motion<1> a, b, c;
-  const auto failed = detail::Ordered::by(Order<1>{a, b});
-  CHECK(detail::Ordered::by(Order<1>{b, a}) == failed.turned());
-  CHECK_FALSE(detail::Ordered::by(Order<1>{a, b}) == failed.turned());
-  CHECK_FALSE(detail::Ordered::by(Order<1>{b, c}) == failed.turned());
-  CHECK_FALSE(detail::Ordered::by(Above{{b, a}}) == failed.turned());
-  CHECK_FALSE(detail::Ordered::by(Order<1>{b, a}) == detail::Ordered{});
-  CHECK_FALSE(Antisymmetric<PolynomialCertificate<1>>);
+namespace {
+
+/// Counts the certificates that are known to be positive when they are made.
+struct CountingSolver : CertifiedSolver {
+  static inline std::uint64_t turned = 0;
+  template <Certificate C>
+  double after_turn(const C& certificate, double now, double horizon) const {
+    ++turned;
+    return CertifiedSolver::after_turn(certificate, now, horizon);
+  }
+};
+
+/// Says of each of n values whether it is positive; what proves it turns round when it fails.
+struct SignRule {
+  struct Side {
+    static constexpr int degree = 2;
+    const Motion<2>& x;
+    double sign;
+    template <class Number>
+    auto polynomial(double epoch) const {
+      return about<Number>(x, epoch) * sign;
+    }
+    bool is_negative_of(const Side& other) const { return &x == &other.x && sign == -other.sign; }
+  };
+  using Element = Motion<2>;
+  static constexpr const char* name = "Sign";
+  std::vector<double> signs;
+
+  std::variant<std::monostate, Side> certificate(Slot slot, const MovingSet<Element>& x) const {
+    if (!x.contains(slot)) return {};
+    return Side{x[slot], signs[slot]};
+  }
+  std::array<Id, 1> members(Slot slot) const { return {slot}; }
+  Effect repair(Slot slot, Repair<Element>& repair) {
+    signs[slot] = -signs[slot];
+    repair.certify(slot ^ 1);  // of another value, which has not turned
+    return Effect::external;
+  }
+  void insert(Id id, Repair<Element>& repair) {
+    signs.resize(repair.elements().end_id());
+    signs[id] = repair.sign(Side{repair[id], 1}) >= 0 ? 1 : -1;
+    repair.certify(id);
+  }
+  void remove(Id id, Repair<Element>& repair) { repair.retire(id); }
+};
+
+/// How many certificates of a run were known to be positive, and how many events there were.
+template <class Rule, class Make>
+std::array<std::uint64_t, 2> turned_and_events(Id n, Make&& make) {
+  Random random(515);
+  MovingSet<typename Rule::Element> set;
+  for (Id id = 0; id < n; ++id) set.insert(id, make(random), 0);
+  Kinetic<Rule, NoListener, DefaultEventQueue, CountingSolver> structure(set, 0);
+  Simulator simulator(0, structure);
+  CountingSolver::turned = 0;
+  simulator.advance_to(2);
+  simulator.audit();
+  return {CountingSolver::turned, structure.measures().events};
+}
+
+}  // namespace
+
+TEST_CASE("the negative of a certificate that has failed is known to be positive", "[framework]") {
+  const auto value = [](Random& random) { return random_motion<2>(random, Kind::generic, 0); };
+  const auto [swapped, swaps] = turned_and_events<examples::ListRule<Motion<2>>>(40, value);
+  CHECK(swaps > 100);
+  CHECK(swapped == swaps);
+  const auto [turned, turns] = turned_and_events<SignRule>(40, value);
+  CHECK(turns > 10);
+  CHECK(turned == turns);
+  // Of the certificates that a flip makes, that of the new edge, if it is between points.
+  const auto path = [](Random& random) {
+    const auto x = random_motion<1>(random, Kind::generic, 0), y = random_motion<1>(random, Kind::generic, 0);
+    return certificates::PlaneMotion<1>{{x.position, y.position}, 0};
+  };
+  const auto [flipped, flips] = turned_and_events<structures::DelaunayRule<certificates::PlaneMotion<1>>>(30, path);
+  CHECK(flips > 50);
+  CHECK(flipped > flips / 2);
+  CHECK(flipped <= flips);
 }
 
 TEST_CASE("the list of the framework swaps when the tuned one does, and keeps to its measures", "[framework]") {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <set>
+#include <utility>
 
 namespace test_calendar_queue {
 
@@ -46,6 +47,43 @@ TEST_CASE("a calendar tells of all events up to a time, and rearranges nothing",
     }
     CHECK(visited > 0);
   }
+}
+
+TEST_CASE("few events among many slots are in order, also where slots take over from others", "[events]") {
+  const std::uint64_t seed = 21;
+  CAPTURE(seed);
+  Random random(seed);
+  CalendarQueue<> queue;
+  queue.resize(1'000'000);
+  std::set<std::pair<double, Slot>> expected;
+  int wrong = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const auto slot = static_cast<Slot>(random.below(random.one_in(2) ? 1'000'000 : 100));
+    if (queue.contains(slot)) expected.erase({queue.time(slot), slot});
+    if (random.one_in(3)) {
+      queue.clear(slot);
+      wrong += queue.contains(slot) || queue.time(slot) != detail::no_event;
+    } else {
+      const double time = random.integer(0, 50);  // many at one time
+      queue.set(slot, time);
+      expected.insert({time, slot});
+    }
+    while (expected.size() > 100) {
+      wrong += queue.top() != QueuedEvent{expected.begin()->first, expected.begin()->second};
+      queue.pop();
+      expected.erase(expected.begin());
+    }
+    wrong += queue.size() != expected.size();
+  }
+  queue.resize(50);  // drops most
+  std::erase_if(expected, [](const auto& event) { return event.second >= 50; });
+  queue.resize(1'000'000);
+  for (const auto& [time, slot] : expected) {
+    wrong += queue.top() != QueuedEvent{time, slot};
+    queue.pop();
+  }
+  CHECK(wrong == 0);
+  CHECK(queue.empty());
 }
 
 }  // namespace test_calendar_queue

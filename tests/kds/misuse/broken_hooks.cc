@@ -22,10 +22,8 @@ struct QuickFailureTimeAfterTurn : Whole {
 struct QuickFailureTimes : Whole {
   static double quick_failure_times(const Whole&, const Whole&, double, double) { return never; }
 };
-struct IsAntisymmetric : Whole {
-  static constexpr bool antisymmetric = true;
-  Motion<1> lower;  // not a reference, so that nobody can tell which motions it is about
-  Motion<1> upper;
+struct IsNegativeOf : Whole {
+  bool is_negative_of(const Whole&) const { return false; }  // of a certificate of another type
 };
 
 template <class C>
@@ -34,7 +32,7 @@ double ask(const C& certificate) {
 }
 double all() {
   return ask(Whole{}) + ask(Vanishes{}) + ask(ExtendedValue{}) + ask(QuickFailureTime{}) +
-         ask(QuickFailureTimeAfterTurn{}) + ask(QuickFailureTimes{}) + ask(IsAntisymmetric{});
+         ask(QuickFailureTimeAfterTurn{}) + ask(QuickFailureTimes{}) + ask(IsNegativeOf{});
 }
 
 }  // namespace misuse

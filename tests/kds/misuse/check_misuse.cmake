@@ -45,7 +45,7 @@ if(NOT times EQUAL 6)
   message(FATAL_ERROR "${times} certificates of temporaries are refused, where 6 are made:\n${said}")
 endif()
 
-set(hooks vanishes extended_value quick_failure_time quick_failure_time_after_turn quick_failure_times antisymmetric)
+set(hooks vanishes extended_value quick_failure_time quick_failure_time_after_turn quick_failure_times is_negative_of)
 list(TRANSFORM hooks REPLACE "(.+)" "certificate: `\\1` must be" OUTPUT_VARIABLE messages)
 said_of(broken_hooks.cc ${messages})
 # Each is named once, of the certificate in which it is wrong.

@@ -30,9 +30,12 @@ Polynomial<Degree, Ball<double>> balls(const Polynomial<Degree>& p) {
 /// Whether the claim holds for p, by all its roots over the rationals.
 template <int Degree>
 bool holds(const Crossing& crossing, const Polynomial<Degree>& p, double end) {
-  if (crossing.status == Status::undecided) return true;
+  if (crossing.status == Status::undecided && crossing.after == 0) return true;
   const oracle::Polynomial q = oracle::Polynomial::motion({p.c.begin(), p.c.end()}, 0);
   if (q.sign_after(0) < 0) return true;  // not what the function is for
+  if (crossing.status == Status::undecided) {
+    return !oracle::first_negative(q, 0, oracle::rational(crossing.after * (1 - 0x1p-44)));
+  }
   const auto fall = oracle::first_negative(q, 0, oracle::time_end(end));
   if (crossing.status == Status::none) return !fall;
   const auto first = oracle::first_negative(q, 0);
