@@ -192,22 +192,22 @@ void assign_bodies(Division& division, const Bodies<Motion>& bodies, const Scrip
 
 namespace detail {
 
-/// How far guided bodies reach that have owners. If all had, windows of a scene with a large one would be short; so
-/// those that are larger than all free bodies have none, unless they are many.
+/// How far bodies that move by themselves may reach if they are to have owners. If all had, windows of a scene with a
+/// large one would be short; so those that are larger than all that others move have none, unless they are many.
 template <class Motion>
 double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts) {
   constexpr std::size_t few = 16, one_in = 100;
-  double largest_free = 0;
+  double largest_moved = 0;
   std::vector<double> guided;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
     const MovedBy moved = moved_by(bodies, scripts, slot);
-    if (moved == MovedBy::others) largest_free = std::max(largest_free, bodies[slot].bounding_radius);
+    if (moved == MovedBy::others) largest_moved = std::max(largest_moved, bodies[slot].bounding_radius);
     if (moved == MovedBy::itself) guided.push_back(reach(bodies, slot));
   }
-  const auto larger = [&](double reach) { return reach > largest_free; };
+  const auto larger = [&](double reach) { return reach > largest_moved; };
   const auto many = static_cast<std::size_t>(std::ranges::count_if(guided, larger));
-  return largest_free > 0 && many <= std::max(few, bodies.size() / one_in) ? largest_free : never;
+  return largest_moved > 0 && many <= std::max(few, bodies.size() / one_in) ? largest_moved : never;
 }
 
 }  // namespace detail

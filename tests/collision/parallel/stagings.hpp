@@ -2,7 +2,6 @@
 // bodies that keep their orientation and of bodies that turn.
 #pragma once
 
-#include "collision/shapes/convex_hull.hpp"
 #include "tests/collision/parallel/compared_runs.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -11,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <utility>
