@@ -14,15 +14,15 @@ endif()
 
 # The same of bodies that turn.
 run("${TOOL}" --generate spinning-rings --bodies 200 --density 0.1 --seed 5 --output rings.json --quiet)
-run("${TOOL}" rings.json --until 1 --events one_turning.csv --quiet)
-run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" rings.json --until 1 --domains 4 --events several_turning.csv
+run("${TOOL}" rings.json --until 3 --events one_turning.csv --quiet)
+run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" rings.json --until 3 --domains 4 --events several_turning.csv
   --stats turning.json --quiet)
 file(READ "${FOLDER}/one_turning.csv" one_turning)
 file(READ "${FOLDER}/several_turning.csv" several_turning)
 file(READ "${FOLDER}/turning.json" stats)
-string(JSON windows GET "${stats}" windows)
+string(JSON domains GET "${stats}" domains)
 string(JSON contacts GET "${stats}" contacts)
-if(NOT one_turning STREQUAL several_turning OR windows LESS 1 OR contacts LESS 20)
+if(NOT one_turning STREQUAL several_turning OR NOT domains EQUAL 4 OR contacts LESS 20)
   message(FATAL_ERROR "the events of ${PROCESSES} processes are not those of one world: ${FOLDER}/several_turning.csv, "
                       "or too little has happened: ${stats}")
 endif()
