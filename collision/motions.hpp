@@ -27,6 +27,13 @@
 #define KDS_FOR_EACH_MOTION(instantiate) KDS_FOR_EACH_PATH(instantiate)
 #endif
 
+// KDS_FOR_EACH_DIVISIBLE(instantiate): the same for those of worlds that can be divided (parallel/parallel_world.hpp).
+#if defined(KDS_SPLINE_DEGREES)
+#define KDS_FOR_EACH_DIVISIBLE(instantiate)
+#else
+#define KDS_FOR_EACH_DIVISIBLE(instantiate) KDS_FOR_EACH_MOTION(instantiate)
+#endif
+
 // The same for all that a program is linked with, in a header: for `extern template`. (KDS_TURNING is defined for all
 // that link kds::collision_turning.)
 #ifdef KDS_SPLINES
@@ -42,4 +49,12 @@
   KDS_FOR_ALL_PATHS(declare) declare(certificates::RigidMotion<1>) declare(certificates::RigidMotion<2>)
 #else
 #define KDS_FOR_ALL_MOTIONS(declare) KDS_FOR_ALL_PATHS(declare)
+#endif
+
+#ifdef KDS_TURNING
+#define KDS_FOR_ALL_DIVISIBLE(declare)                                                                              \
+  declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>) declare(certificates::RigidMotion<1>) \
+      declare(certificates::RigidMotion<2>)
+#else
+#define KDS_FOR_ALL_DIVISIBLE(declare) declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>)
 #endif

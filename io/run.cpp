@@ -39,7 +39,7 @@ BroadPhaseKind choose(const std::string& name) {
   for (const auto& broad_phase : kds::collision::broad_phases) {
     if (broad_phase.name == name) return broad_phase.kind;
   }
-  throw std::invalid_argument("--broad-phase: there is no \"" + name + "\"; --broad-phase list names them");
+  throw std::invalid_argument("RunOptions.broad_phase: there is no \"" + name + "\"");
 }
 
 /// Bodies are added in the order of the scene and none is removed: their slots are their places in it.
@@ -128,7 +128,7 @@ class DividedTeller final : public kds::collision::ParallelListener {
 kds::collision::WorldOptions world_options(const Scene& scene, const RunOptions& options) {
   const BroadPhaseKind broad_phase = choose(options.broad_phase);
   if (broad_phase == BroadPhaseKind::sap && !(options.rate > 0)) {
-    throw std::invalid_argument("--rate: must be > 0 for the broad phase \"sap\"");
+    throw std::invalid_argument("RunOptions.rate: must be > 0 for the broad phase \"sap\"");
   }
   kds::collision::WorldOptions world_options;
   world_options.start_time = scene.begin_time;
@@ -299,11 +299,11 @@ void share(kds::collision::Team& team, Share mine, RunResult& result) {
   result.peak_memory_bytes = mine.peak_memory_bytes;
 }
 
-template <int Degree>
+template <class Motion>
 RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& sink) {
   const double setup_start = cpu_seconds();
   DividedTeller teller(sink);
-  kds::collision::ParallelWorld<Degree> world(
+  kds::collision::BasicParallelWorld<Motion> world(
       world_options(scene, options), {.threads = options.threads, .domains = options.domains, .steps = options.steps},
       &teller, options.processes);
   kds::collision::WorldCounters before;
@@ -333,17 +333,19 @@ RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
   const bool divided = options.domains != 1 || options.processes;
-  if (scene.turning && divided) throw std::invalid_argument("--domains: a scene in which bodies turn is not divided");
   if (divided && (options.pairs || options.profile)) {
-    throw std::invalid_argument("--domains: volumes are not told of, nor work profiled, in a scene that is divided");
+    throw std::invalid_argument(
+        "RunOptions.domains: volumes are not told of, nor work profiled, in a scene that is divided");
   }
-  if (divided) return scene.degree() == 2 ? run_divided<2>(scene, options, sink) : run_divided<1>(scene, options, sink);
+  const auto run_of = [&]<class Motion>(std::type_identity<Motion>) {
+    return divided ? run_divided<Motion>(scene, options, sink) : run_with<Motion>(scene, options, sink);
+  };
   if (scene.turning) {
-    return scene.degree() == 2 ? run_with<RigidMotion<2>>(scene, options, sink)
-                               : run_with<RigidMotion<1>>(scene, options, sink);
+    return scene.degree() == 2 ? run_of(std::type_identity<RigidMotion<2>>())
+                               : run_of(std::type_identity<RigidMotion<1>>());
   }
-  return scene.degree() == 2 ? run_with<PointMotion<2>>(scene, options, sink)
-                             : run_with<PointMotion<1>>(scene, options, sink);
+  return scene.degree() == 2 ? run_of(std::type_identity<PointMotion<2>>())
+                             : run_of(std::type_identity<PointMotion<1>>());
 }
 
 }  // namespace kds::io

@@ -1,7 +1,10 @@
 #include "collision/parallel/domain.hpp"
 
+#include "collision/motions.hpp"
+
 #include <algorithm>
-#include <cstring>
+#include <stdexcept>
+#include <utility>
 
 namespace kds::collision {
 namespace {
@@ -11,22 +14,19 @@ WorldOptions for_domain(WorldOptions options, double now) {
   options.start_time = now;
   options.threads = 1;
   options.profile = false;
+  options.report_pieces = true;
   return options;
-}
-
-/// Not whether they are equal: 0 and -0 are, and may have different consequences.
-template <class Motion>
-bool same_bits(const Motion& a, const Motion& b) {
-  return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(Motion)) == 0;
 }
 
 }  // namespace
 
 template <class Motion>
-Domain<Motion>::Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs)
+Domain<Motion>::Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs,
+                       bool first)
     : division_(division),
       index_(index),
       logs_(logs),
+      first_(first),
       resolves_(options.response == Response::elastic),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)) {
@@ -57,7 +57,7 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
   }
   if (come.empty()) return;
   const auto before = static_cast<std::ptrdiff_t>(slots_.size());
-  const std::vector<BodySlot> taken = engine_.take_in(store, come);
+  const std::vector<BodySlot> taken = engine_.take_in(store, come, slots_);
   slots_.insert(slots_.end(), taken.begin(), taken.end());
   std::inplace_merge(slots_.begin(), slots_.begin() + before, slots_.end(),
                      [&](BodySlot a, BodySlot b) { return number(a) < number(b); });
@@ -75,7 +75,7 @@ void Domain<Motion>::begin_window() {
   const auto& bodies = engine_.bodies();
   const StaticBox& cell = division_.partition.cell(index_);
   const double now = world_.now();
-  role_.assign(bodies.slots(), Role::still), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
+  role_.assign(bodies.slots(), Role::unowned), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
@@ -94,7 +94,8 @@ void Domain<Motion>::begin_window() {
       continue;
     }
     ++report_.owned;
-    if (inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
+    const bool steady = !detail::has_script(bodies, engine_.scripts(), slot);
+    if (steady && inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
       role_[slot] = Role::deep;
       continue;
     }
@@ -129,6 +130,8 @@ void Domain<Motion>::run(double until) {
     world_.advance_to(until);
   } catch (const RestsInPart&) {
     report_.divisible = false;
+  } catch (const std::runtime_error&) {
+    report_.divisible = false;  // Perhaps of a copy that has gone wrong. If not, the scene as one world throws it too.
   }
   if (!report_.divisible) return;
   for (Followed& body : followed_) follow(body, until);
@@ -142,7 +145,7 @@ void Domain<Motion>::run(double until) {
 
 template <class Motion>
 void Domain<Motion>::follow(Followed& body, double until) {
-  const StaticBox swept = swept_point(body.motion, body.since, until);
+  const StaticBox swept = swept_place(path_of(body.motion), body.since, until);
   report_.overshoot = std::max(report_.overshoot, reach_outside(swept, division_.partition.cell(index_)));
   for (const std::uint32_t place : strangers_[body.strangers]) {
     NeighbourDomain& other = neighbours_[place];
@@ -171,9 +174,7 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
     const auto mine = changes_of(number, all.size());
     const auto right = changes_of(number, owner);
     std::size_t same = 0;
-    while (same < std::min(mine.size(), right.size()) && mine[same].time == right[same].time &&
-           same_bits(mine[same].motion, right[same].motion))
-      ++same;
+    while (same < std::min(mine.size(), right.size()) && same_bits(mine[same], right[same])) ++same;
     if (same == mine.size() && same == right.size()) continue;
     wrong_.push_back(number);
     const double from =
@@ -183,7 +184,8 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
       double since = from;
       for (std::size_t i = same; i <= changes.size(); ++i) {
         const double until = i < changes.size() ? changes[i].time : world_.now();
-        report_.nearest_wrong = std::min(report_.nearest_wrong, outside(swept_point(*motion, since, until), cell));
+        report_.nearest_wrong =
+            std::min(report_.nearest_wrong, outside(swept_place(path_of(*motion), since, until), cell));
         if (i < changes.size()) motion = &changes[i].motion, since = until;
       }
     }
@@ -193,7 +195,7 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
 
 template <class Motion>
 void Domain<Motion>::commit(Engine<Motion>& store) const {
-  for (const BodySlot slot : changed_) store.go_on_from(number(slot), engine_.bodies().progress(slot));
+  for (const BodySlot slot : changed_) store.go_on_from(number(slot), engine_.progress(slot));
 }
 
 template <class Motion>
@@ -205,7 +207,9 @@ void Domain<Motion>::commit_meetings(Engine<Motion>& store) const {
 
 template <class Motion>
 void Domain<Motion>::append_changed(std::vector<BodySlot>& numbers) const {
-  for (const BodySlot slot : changed_) numbers.push_back(number(slot));
+  for (const BodySlot slot : changed_) {
+    if (role_[slot] != Role::unowned) numbers.push_back(number(slot));
+  }
 }
 
 template <class Motion>
@@ -225,7 +229,7 @@ void Domain<Motion>::find_moves(const Engine<Motion>& store, double t) {
   std::vector<DomainIndex> knowers;
   for (const Followed& body : followed_) {
     const BodySlot moved = number(body.slot);
-    const Eigen::Vector3d place = store.bodies().path(moved).position(t);
+    const Eigen::Vector3d place = place_at(store.bodies().path(moved), t);
     // Mostly it is deeper in the cell than any other's halo, as it was.
     if (division_.is_known_to_one(moved) && inside(place, division_.partition.cell(index_)) > division_.halo) continue;
     const auto owner = static_cast<DomainIndex>(division_.partition.cell_of(place));
@@ -234,18 +238,25 @@ void Domain<Motion>::find_moves(const Engine<Motion>& store, double t) {
   }
 }
 
-/// A body has another motion: what others are to compare, and whether it has stayed where it had to.
+/// A body has another motion, and what is attached to it.
 template <class Motion>
 void Domain<Motion>::changed(BodySlot slot, double t) {
+  note_change(slot, t);
+  const auto& attachments = engine_.bodies().attachments();
+  if (attachments.empty()) return;
+  for (const BodySlot sensor : attachments.sensors(slot)) note_change(sensor, t);
+}
+
+/// What others are to compare, and whether it has stayed where it had to.
+template <class Motion>
+void Domain<Motion>::note_change(BodySlot slot, double t) {
   const Role role = role_[slot];
-  if (role == Role::still) return;
+  const bool tells = role == Role::unowned ? first_ : role != Role::copy;
+  if (tells && !std::exchange(has_changed_[slot], char{1})) changed_.push_back(slot);
+  if (role == Role::unowned) return;
   const Motion& motion = engine_.bodies().motion(slot);
-  if (role != Role::copy && !has_changed_[slot]) {
-    has_changed_[slot] = 1;
-    changed_.push_back(slot);
-  }
   if (role == Role::deep) {
-    report_.stayed = report_.stayed && stays_deep(motion.position(t));
+    report_.stayed = report_.stayed && stays_deep(path_of(motion).position(t));
     return;
   }
   if (role == Role::followed) {
@@ -254,17 +265,26 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
     body.since = t, body.motion = motion;
     if (division_.is_known_to_one(number(slot))) return;
   }
-  fresh_.push_back({number(slot), motion, t});
+  fresh_.push_back({number(slot), motion, t, engine_.progress(slot).turning});
 }
 
+/// Whether this is the first of the domains that know two bodies. Precondition: it knows both.
+template <class Motion>
+bool Domain<Motion>::is_first_to_know(BodySlot a, BodySlot b) const {
+  const auto of_a = division_.knowers(a), of_b = division_.knowers(b);
+  auto first = of_a.begin();
+  for (auto other = of_b.begin(); *first != *other;) *first < *other ? ++first : ++other;
+  return *first == index_;
+}
+
+/// Events of bodies without an owner are told by one of the domains that know them.
 template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   ++report_.computed;
   const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
   const DomainIndex of_a = division_.owner[a], of_b = division_.owner[b];
   const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
-  const bool mine =
-      fixed ? division_.partition.cell_of(event.contact.point) == index_ : of_a == index_ || of_b == index_;
+  const bool mine = fixed ? is_first_to_know(a, b) : of_a == index_ || of_b == index_;
   if (!mine) return;
   const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
   // Of a shared one the owner of the first body counts it.
@@ -312,14 +332,36 @@ template <class Motion>
 void Domain<Motion>::wall(World&, const WallEvent& event) {
   ++report_.computed;
   const BodySlot slot = body_slot(event.body);
-  if (role_[slot] != Role::copy) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
-  if (role_[slot] != Role::copy && logs_) {
+  const Role role = role_[slot];
+  const bool mine = role == Role::unowned ? is_first_to_know(number(slot), number(slot)) : role != Role::copy;
+  if (mine) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
+  if (mine && logs_) {
     put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact});
   }
   changed(slot, event.contact.time);
 }
 
-template class Domain<certificates::PointMotion<1>>;
-template class Domain<certificates::PointMotion<2>>;
+template <class Motion>
+void Domain<Motion>::piece(World&, BodyId id) {
+  const BodySlot slot = body_slot(id);
+  const double t = world_.now();
+  if (role_[slot] == Role::followed) {  // If it jumps out of the halo no shorter window would hold.
+    const auto leaves = [&](const Motion& motion) {
+      return outside(place_at(path_of(motion), t), division_.partition.cell(index_)) > division_.halo;
+    };
+    if (!leaves(followed_[place_[slot]].motion) && leaves(engine_.bodies().motion(slot))) report_.divisible = false;
+  }
+  changed(slot, t);
+}
+
+/// A piece of the motion of a body that precesses begins.
+template <class Motion>
+void Domain<Motion>::moved(World&, BodyId id) {
+  changed(body_slot(id), world_.now());
+}
+
+#define KDS_INSTANTIATE(motion) template class Domain<motion>;
+KDS_FOR_EACH_DIVISIBLE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

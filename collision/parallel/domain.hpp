@@ -1,6 +1,7 @@
 // A world that knows a part of a scene: the bodies of a cell and those near it.
 #pragma once
 
+#include "collision/motions.hpp"
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/motion_changes.hpp"
 #include "collision/parallel/parallel_options.hpp"
@@ -32,7 +33,8 @@ struct EngineOf {
 
 /// What has come of a window, or of its last step, in a domain.
 struct DomainReport {
-  /// Whether nothing has happened that is not divided: nothing has come to rest, and no pair is let pass.
+  /// Whether nothing has happened that is not divided: nothing has come to rest, no pair is let pass, and no script
+  /// takes a body far away at one instant.
   bool divisible = true;
   /// Whether what was not followed has stayed where it had to.
   bool stayed = true;
@@ -71,8 +73,9 @@ class Domain final : private BasicWorldListener<Motion> {
   using Overlap = typename Engine<Motion>::Overlap;
   using Change = MotionChange<Motion>;
 
-  /// `logs`: whether events are recorded. The division must outlive the domain.
-  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs);
+  /// `logs`: whether events are recorded. `first`: of the domains with one store, this tells it of bodies without an
+  /// owner. The division must outlive the domain.
+  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs, bool first);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
@@ -102,7 +105,8 @@ class Domain final : private BasicWorldListener<Motion> {
   std::size_t index() const { return index_; }
   WorldCounters work() const { return world_.counters(); }
 
-  /// Tells `store` of the owned bodies that have changed. Domains may do the first at once, the second one by one.
+  /// Tells `store` of the bodies of this domain that have changed. Domains may do the first at once, the second one by
+  /// one.
   void commit(Engine<Motion>& store) const;
   void commit_meetings(Engine<Motion>& store) const;
   /// Numbers of owned bodies that the last step has changed.
@@ -115,7 +119,7 @@ class Domain final : private BasicWorldListener<Motion> {
   const BodyMoves& moves() const { return moves_; }
 
  private:
-  enum class Role : std::uint8_t { still, deep, followed, copy };
+  enum class Role : std::uint8_t { unowned, deep, followed, copy };
   /// A followed body: how it moves, and since when that is recorded.
   struct Followed {
     BodySlot slot;
@@ -132,6 +136,8 @@ class Domain final : private BasicWorldListener<Motion> {
   void separation(World&, const PairEvent& event) override;
   void overlap(World&, const PairEvent& event) override;
   void wall(World&, const WallEvent& event) override;
+  void piece(World&, BodyId id) override;
+  void moved(World&, BodyId id) override;
   void rebound_suppressed(World&, const PairEvent&) override { report_.divisible = false; }
   void rebound_suppressed_at_wall(World&, const WallEvent&) override { report_.divisible = false; }
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
@@ -141,9 +147,11 @@ class Domain final : private BasicWorldListener<Motion> {
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);
   BodySlot slot_of(BodySlot number) const { return slots_[place_of(number)]; }
+  bool is_first_to_know(BodySlot a, BodySlot b) const;
   void record(DomainEvent::Kind kind, const PairEvent& event);
   void put(const DomainEvent& event);
   void changed(BodySlot slot, double t);
+  void note_change(BodySlot slot, double t);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
     return inside(place, division_.partition.cell(index_)) - division_.bulge >= division_.halo;
@@ -152,6 +160,7 @@ class Domain final : private BasicWorldListener<Motion> {
   const Division& division_;
   const std::size_t index_;
   const bool logs_;
+  const bool first_;
   const bool resolves_;  ///< whether contacts change motions
   World world_;
   Engine<Motion>& engine_;
@@ -159,10 +168,10 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<Role> role_;       ///< by slot
   std::vector<std::uint32_t>
       place_;  ///< by slot, of followed bodies: in followed_; of copies: of the owner in neighbours_
-  std::vector<char> has_changed_;  ///< by slot, of owned bodies: in this step
+  std::vector<char> has_changed_;  ///< by slot: in this step, and this domain tells the store
   std::vector<Followed> followed_;
   std::vector<Copy> copies_;       ///< by number
-  std::vector<BodySlot> changed_;  ///< slots of owned bodies
+  std::vector<BodySlot> changed_;  ///< slots of those bodies
   std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
@@ -176,7 +185,8 @@ class Domain final : private BasicWorldListener<Motion> {
   DomainReport report_;
 };
 
-extern template class Domain<certificates::PointMotion<1>>;
-extern template class Domain<certificates::PointMotion<2>>;
+#define KDS_DECLARE(motion) extern template class Domain<motion>;
+KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -1,6 +1,7 @@
 #include "collision/parallel/domains.hpp"
 
 #include "collision/in_parts.hpp"
+#include "collision/motions.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -32,7 +33,8 @@ void Domains<Motion>::each_process(std::span<const DomainIndex> domains, const T
 
 template <class Motion>
 bool Domains<Motion>::has(BodySlot number) const {
-  return !any() || division_->owner[number] == Division::nobody || is_here(division_->owner[number]);
+  if (!any()) return true;
+  return division_->owner[number] == Division::nobody ? !domains_.empty() : is_here(division_->owner[number]);
 }
 
 template <class Motion>
@@ -63,7 +65,7 @@ void Domains<Motion>::make(double now) {
   heard_.clear();
   first_ = (team_.rank() * size() + team_.count() - 1) / team_.count();
   for (std::size_t i = first_; i < size() && is_here(i); ++i) {
-    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_));
+    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_));
   }
   std::vector<std::vector<BodySlot>> known(domains_.size());
   for (BodySlot number = 0; number < division_->known.size(); ++number) {
@@ -296,7 +298,7 @@ void Domains<Motion>::add_progress(NewsByProcess& news) {
 
 template <class Motion>
 BodyNews<Motion> Domains<Motion>::news_of(BodySlot number) const {
-  return {number, store_.bodies().progress(number), store_.has_met(number)};
+  return {number, store_.progress(number), store_.has_met(number)};
 }
 
 /// Notes who owns and knows a body from now on, and which domains of this process are to let it go and to take it in.
@@ -353,7 +355,9 @@ void Domains<Motion>::share_all() {
   news.overlaps = overlaps_;
   for (BodySlot number = 0; number < division_->owner.size(); ++number) {
     const DomainIndex owner = division_->owner[number];
-    if (owner != Division::nobody && is_here(owner)) news.bodies.push_back(news_of(number));
+    const bool tells =
+        division_->is_everywhere(number) ? team_.rank() == 0 : owner != Division::nobody && is_here(owner);
+    if (tells) news.bodies.push_back(news_of(number));
   }
   Letters letters;
   for (std::size_t process = 0; process < team_.count(); ++process) {
@@ -374,7 +378,8 @@ WorldCounters Domains<Motion>::work() const {
   return all;
 }
 
-template class Domains<certificates::PointMotion<1>>;
-template class Domains<certificates::PointMotion<2>>;
+#define KDS_INSTANTIATE(motion) template class Domains<motion>;
+KDS_FOR_EACH_DIVISIBLE(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

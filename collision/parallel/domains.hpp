@@ -1,6 +1,7 @@
 // All domains of a scene, of which this process runs some.
 #pragma once
 
+#include "collision/motions.hpp"
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domain.hpp"
 #include "collision/parallel/news.hpp"
@@ -116,7 +117,8 @@ class Domains {
   WorldCounters work_;  ///< of domains that there were
 };
 
-extern template class Domains<certificates::PointMotion<1>>;
-extern template class Domains<certificates::PointMotion<2>>;
+#define KDS_DECLARE(motion) extern template class Domains<motion>;
+KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

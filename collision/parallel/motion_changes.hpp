@@ -1,10 +1,14 @@
 // The motions that bodies are given in a window, as domains compare them.
 #pragma once
 
+#include "certificates/point_motion.hpp"
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_id.hpp"
+#include "collision/world/turning/tumbling.hpp"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -16,12 +20,29 @@ struct MotionChange {
   BodySlot number;
   Motion motion;
   double time;  ///< s
+  [[no_unique_address]] typename Tumbling<Motion>::Progress turning{};
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(number, motion, time);
+    archive(number, motion, time, turning);
   }
 };
+
+/// Not whether they are equal: 0 and -0 are, and may have different consequences.
+template <int Degree>
+bool same_bits(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
+  return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(a)) == 0;
+}
+template <int Degree>
+bool same_bits(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
+  const auto same = [](const auto& x, const auto& y) { return std::memcmp(x.data(), y.data(), sizeof(x)) == 0; };
+  return same_bits(a.path, b.path) && same(a.orientation.coeffs(), b.orientation.coeffs()) &&
+         same(a.angular_velocity, b.angular_velocity);
+}
+template <class Motion>
+bool same_bits(const MotionChange<Motion>& a, const MotionChange<Motion>& b) {
+  return a.time == b.time && same_bits(a.motion, b.motion) && same_bits(a.turning, b.turning);
+}
 
 template <class Motion>
 bool has_lower_number(const MotionChange<Motion>& a, const MotionChange<Motion>& b) {

@@ -46,7 +46,7 @@ struct BodyNews {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(number, progress.motion, progress.meetings, progress.burst_start, met);
+    archive(number, progress, met);
   }
 };
 

@@ -1,5 +1,6 @@
 #include "collision/parallel/parallel_world.hpp"
 
+#include "collision/motions.hpp"
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/relayed_events.hpp"
@@ -17,14 +18,6 @@
 #include <vector>
 
 namespace kds::collision {
-
-void validate(const ParallelOptions& options) {
-  const auto fail = [](const char* what) { throw std::invalid_argument(std::string("ParallelOptions.") + what); };
-  if (options.domains > most_domains) fail("domains: must be at most 65535");
-  static_assert(most_domains == 65535);
-  if (!(options.halo > 0 && std::isfinite(options.halo))) fail("halo: must be > 0 and finite");
-  if (!(options.longest_window > 0)) fail("longest_window: must be > 0");
-}
 
 namespace {
 
@@ -160,7 +153,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       world_.advance_to(now_);
     }
     if (!store_.is_divisible()) return false;
-    auto division = collision::divide(store_.bodies(), now_, parallel_, workers());
+    auto division = collision::divide(store_.bodies(), store_.scripts(), now_, parallel_, workers());
     if (!division) return false;
     if (!(length_.seconds() > 0)) {
       const double fastest = division->greatest_speed + std::sqrt(division->greatest_bend * division->halo);
@@ -234,7 +227,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
   void commit(double end) {
-    if (std::exchange(unstarted_, false)) store_.note_entered();
+    unstarted_ = false;
+    store_.note_passed(end);
     domains_.commit();
     const StepOutcome& outcome = domains_.outcome();
     counters_.overlaps += outcome.told[0], counters_.wall_contacts += outcome.told[1];
@@ -261,7 +255,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void divide_anew() {
     domains_.share_all();
-    auto division = collision::divide(store_.bodies(), now_, parallel_, workers());
+    auto division = collision::divide(store_.bodies(), store_.scripts(), now_, parallel_, workers());
     if (!division) return gather();
     auto overlaps = domains_.end();
     domains_.begin(std::move(*division), std::move(overlaps), logs_);
@@ -384,8 +378,7 @@ void BasicParallelWorld<Motion>::archive(Archive& archive) {
   template class BasicParallelWorld<motion>;                               \
   template void BasicParallelWorld<motion>::archive(kds::detail::Writer&); \
   template void BasicParallelWorld<motion>::archive(kds::detail::Reader&);
-KDS_INSTANTIATE(certificates::PointMotion<1>)
-KDS_INSTANTIATE(certificates::PointMotion<2>)
+KDS_FOR_EACH_DIVISIBLE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

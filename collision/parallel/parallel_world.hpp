@@ -1,6 +1,7 @@
 // A world that is run as several, each for a part of the scene, by several threads.
 #pragma once
 
+#include "collision/motions.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/processes.hpp"
 #include "collision/world.hpp"
@@ -37,9 +38,9 @@ class ParallelListener {
 /// The events are those of a World with the same bodies, in the same order, the same bits, whatever the number of
 /// threads and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
 ///
-/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something;
-/// scripts, timers, meshes that bend, attached sensors, ignored pairs, box functions; response `callback`; reports of
-/// pairs or of pieces. What this costs is in docs/parallel.md.
+/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something,
+/// or bodies that turn are about to; meshes that bend; box functions; response `callback`; reports of pairs or of
+/// pieces. What this costs is in docs/parallel.md. Timers ring, and nobody is told.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body.
@@ -107,7 +108,12 @@ class BasicParallelWorld final {
 template <int Degree>
 using ParallelWorld = BasicParallelWorld<certificates::PointMotion<Degree>>;
 
-extern template class BasicParallelWorld<certificates::PointMotion<1>>;
-extern template class BasicParallelWorld<certificates::PointMotion<2>>;
+/// Of bodies that turn (docs/turning.md), in kds::collision_turning.
+template <int Degree>
+using ParallelTurningWorld = BasicParallelWorld<certificates::RigidMotion<Degree>>;
+
+#define KDS_DECLARE(motion) extern template class BasicParallelWorld<motion>;
+KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+#undef KDS_DECLARE
 
 }  // namespace kds::collision

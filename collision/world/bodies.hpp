@@ -43,14 +43,6 @@ struct CollisionFilter {
   friend bool operator==(const CollisionFilter&, const CollisionFilter&) = default;
 };
 
-/// What changes of a body without callers, if it rests on nothing and has no script.
-template <class Motion>
-struct BodyProgress {
-  Motion motion;
-  std::uint64_t meetings;  ///< as in Body
-  double burst_start;
-};
-
 /// The generation of the last body that a slot can have.
 inline constexpr std::uint32_t last_generation = ~std::uint32_t{0};
 
@@ -241,14 +233,6 @@ class Bodies {
   BodySlot number(BodySlot slot) const { return numbers_.empty() ? slot : numbers_[slot]; }
   /// Adds a body of another world as it is there. It has not entered.
   BodySlot take_in(const Bodies& from, BodySlot slot);
-  /// How far the history of a body has come. One that another world has too goes on from there.
-  BodyProgress<Motion> progress(BodySlot slot) const {
-    return {motion(slot), bodies_[slot].meetings, bodies_[slot].burst_start};
-  }
-  void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) {
-    move(slot, progress.motion);
-    bodies_[slot].meetings = progress.meetings, bodies_[slot].burst_start = progress.burst_start;
-  }
 
   /// The whole state as plain data, for snapshots.
   struct Image;

@@ -11,6 +11,7 @@
 #include "collision/response/turning_impulse.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world/bodies.hpp"
+#include "collision/world/body_progress.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/edit_limit.hpp"
 #include "collision/world/pairs.hpp"
@@ -107,35 +108,41 @@ class Engine final : private RestingListener<BodyMotionType> {
 
   // transfer.cpp: bodies that several worlds have, each for a part of the scene (parallel/parallel_world.hpp). A world
   // takes in bodies of another one in the middle of their history, and what follows is the same, bit for bit: their
-  // motions and counts are those of the other world, their pairs begin as those of bodies that move past each other do,
-  // and pairs that overlap there overlap here.
+  // motions, scripts and counts are those of the other world, their pairs begin as those of bodies that move past each
+  // other do, and pairs that overlap there overlap here.
   /// Two bodies, by slots, that overlap, and Pair::passes_at.
   struct Overlap {
     BodySlot a, b;
     double passes_at;
   };
-  /// Whether nothing decides later events but the motions and counts of bodies and the pairs that overlap.
-  bool is_divisible() const requires(!turns<Motion>);
-  /// Takes in bodies of another world with the same options and clock, whose slots there are their numbers here.
-  /// Those that have not entered there enter with the next step. Returns their slots, in the same order.
-  std::vector<BodySlot> take_in(const Engine& from, std::span<const BodySlot> numbers) requires(!turns<Motion>);
+  /// Whether nothing decides later events but descriptions, scripts and progress of bodies, and the pairs that overlap.
+  bool is_divisible() const;
+  const Scripts<Motion>& scripts() const { return scripts_; }
+  /// Takes in bodies of another world with the same options and clock, whose slots there are their numbers here,
+  /// ascending. Those that have not entered there enter with the next step, or when their motion begins. A sensor and
+  /// the body to which it is attached come together. `known`: the slots of the bodies that were taken in before, by
+  /// their numbers. Returns the slots, in the same order.
+  std::vector<BodySlot> take_in(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> known);
   /// Removes bodies that another world goes on with: nothing is reported.
   void let_go(std::span<const BodySlot> slots);
   /// The overlaps of bodies that have been taken in, by their slots here.
   void go_on_overlapping(std::span<const Overlap> overlaps);
   std::vector<Overlap> overlaps() const;
+  BodyProgress<Motion> progress(BodySlot slot) const {
+    return {bodies_.motion(slot), bodies_[slot].meetings, bodies_[slot].burst_start, tumbling_.progress(slot)};
+  }
   /// A body of this world is as another world has it, whose body it is. The first, for different bodies, may be called
   /// by several threads at once.
-  void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) requires(!turns<Motion>);
-  void note_meeting(BodySlot slot) requires(!turns<Motion>);
+  void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress);
+  void note_meeting(BodySlot slot) { resting_.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
-  bool has_met(BodySlot slot) const requires(!turns<Motion>);
-  /// All bodies have entered.
-  void note_entered();
+  bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
+  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Timers have rung.
+  void note_passed(double t);
   /// Forgets all but the bodies, until go_on().
-  void set_aside() requires(!turns<Motion>);
+  void set_aside();
   /// Goes on at t with the bodies as they are then.
-  void go_on(double t, std::span<const Overlap> overlaps) requires(!turns<Motion>);
+  void go_on(double t, std::span<const Overlap> overlaps);
 
  private:
   using Body = detail::Body<Motion>;
@@ -310,6 +317,11 @@ class Engine final : private RestingListener<BodyMotionType> {
   void tell_resting(bool begins, const detail::RestingContact& contact) override;
   void tell_passes(const detail::RestingContact& contact) override;
   Contact contact_of(const detail::RestingContact& contact) const;
+
+  // transfer.cpp
+  bool has_begun(BodySlot slot) const { return bodies_.path(slot).start <= clock_.now; }
+  void relate(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> taken,
+              std::span<const BodySlot> known);
 
   // near.cpp: queries
   template <class Ask, class Meets>

@@ -42,6 +42,13 @@ class IgnoredPairs {
   }
   void clear() { partners_.clear(); }
 
+  /// Calls visit(other) for each body that does not meet this one, ascending.
+  template <class Visit>
+  void each_partner(BodySlot body, const Visit& visit) const {
+    const auto found = partners_.find(body);
+    if (found == partners_.end()) return;
+    for (const BodySlot other : found->second) visit(other);
+  }
   /// All pairs, in order.
   std::vector<Pair> pairs() const {
     std::vector<Pair> all;

@@ -64,8 +64,8 @@ class RestingListener {
   ~RestingListener() = default;
 };
 
-/// Thrown where contacts would begin to rest in a world of bodies that are those of another one (transfer.cpp): what
-/// rests on each other is not divided among worlds.
+/// Thrown where contacts would begin to rest, or be remembered because they may, in a world of bodies that are those of
+/// another one (transfer.cpp): what rests on each other is not divided among worlds.
 struct RestsInPart : std::exception {
   const char* what() const noexcept override { return "World: a part of a world, in which something comes to rest"; }
 };
@@ -97,6 +97,8 @@ class RestingContacts {
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
+  /// Whether nothing rests, and no cluster goes on: but for has_met(), nothing decides what comes to rest later.
+  bool remembers_nothing() const { return empty() && spans_.empty(); }
   /// A contact of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
   /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.

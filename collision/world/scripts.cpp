@@ -15,6 +15,14 @@ void Scripts<Motion>::add(BodySlot slot, std::span<const Motion> pieces) {
 }
 
 template <class Motion>
+void Scripts<Motion>::take_in(BodySlot slot, const Scripts& from, BodySlot of) {
+  const auto pieces = from.to_come(of);
+  if (pieces.empty()) return;
+  add(slot, {&pieces.back(), 1});
+  scripts_[slot].assign(pieces.begin(), pieces.end());
+}
+
+template <class Motion>
 void Scripts<Motion>::append(BodySlot slot, std::span<const Motion> pieces) {
   if (last_start(slot) == -never) return add(slot, pieces);
   scripts_[slot].insert(scripts_[slot].begin(), pieces.rbegin(), pieces.rend());

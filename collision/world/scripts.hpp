@@ -25,9 +25,15 @@ class Scripts {
   void add(BodySlot slot, std::span<const Motion> pieces);
   /// The same after those that it has. Precondition: they start later.
   void append(BodySlot slot, std::span<const Motion> pieces);
+  /// The same as those that a body of another world has there.
+  void take_in(BodySlot slot, const Scripts& from, BodySlot of);
+  /// The pieces to come of a body, the last first. Valid until some are added, taken or removed.
+  std::span<const Motion> to_come(BodySlot slot) const {
+    return slot < scripts_.size() ? std::span<const Motion>(scripts_[slot]) : std::span<const Motion>();
+  }
   /// When the last piece to come of a body starts; -never if there is none.
   double last_start(BodySlot slot) const {
-    return slot < scripts_.size() && !scripts_[slot].empty() ? path_of(scripts_[slot].front()).start : -never;
+    return to_come(slot).empty() ? -never : path_of(to_come(slot).front()).start;
   }
   /// Removes the pieces still to come.
   void clear(BodySlot slot);

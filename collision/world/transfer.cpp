@@ -2,23 +2,23 @@
 #include "collision/motions.hpp"
 #include "collision/world/engine.hpp"
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 namespace kds::collision {
 
 template <class Motion>
-bool Engine<Motion>::is_divisible() const requires(!turns<Motion>) {
+bool Engine<Motion>::is_divisible() const {
   const bool told_of_work = options_.report_pairs || options_.report_pieces;
   if (failure_ || told_of_work || options_.response == Response::callback) return false;
-  if (scripts_.next_time() < never || timers_.next_time() < never || self_contacts_.next_time() < never) return false;
-  if (volumes_.any_from_callers() || volumes_.end_of_bent() > 0) return false;
-  return bodies_.ignored().empty() && bodies_.attachments().empty() && resting_.empty() && reports_.empty();
+  if (volumes_.any_from_callers() || volumes_.end_of_bent() > 0 || self_contacts_.next_time() < never) return false;
+  return resting_.remembers_nothing() && reports_.empty();
 }
 
 template <class Motion>
-std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from,
-                                              std::span<const BodySlot> numbers) requires(!turns<Motion>) {
+std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<const BodySlot> numbers,
+                                              std::span<const BodySlot> known) {
   require_editable("World::take_in");
   count_edit();
   return change_or_fail([&] {
@@ -29,19 +29,43 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from,
       if (body.shape && has_mesh(body.shape->shape)) make_room_for_meshes();
       const BodySlot slot = bodies_.take_in(from.bodies_, number);
       volumes_.add(slot, {});
-      if constexpr (!turns<Motion>) {
-        if (from.resting_.has_met(number)) resting_.note_meeting(slot);
-      }
+      scripts_.take_in(slot, from.scripts_, number);
+      tumbling_.take_in(slot, from.tumbling_, number);
+      if (from.resting_.has_met(number)) resting_.note_meeting(slot);
       taken.push_back(slot);
       if (body.entered) {
         entering.push_back(slot);
-      } else {
+      } else if (has_begun(slot)) {
         bodies_.wait(slot);
       }
     }
+    relate(from, numbers, taken, known);
     enter(entering, Begin::moving);
     return taken;
   });
+}
+
+/// Which of the bodies that come are attached to each other, and which never meet each other or one that was here.
+template <class Motion>
+void Engine<Motion>::relate(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> taken,
+                            std::span<const BodySlot> known) {
+  const auto& attachments = from.bodies_.attachments();
+  const auto& ignored = from.bodies_.ignored();
+  if (attachments.empty() && ignored.empty()) return;
+  const auto number = [this](BodySlot slot) { return bodies_.number(slot); };
+  const auto slot_among = [&](std::span<const BodySlot> slots, BodySlot of) {
+    const auto found = std::ranges::lower_bound(slots, of, {}, number);
+    return found != slots.end() && number(*found) == of ? *found : no_body;
+  };
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const BodySlot owner = attachments.owner(numbers[i]);
+    if (owner != no_body) bodies_.attach(taken[i], slot_among(taken, owner));
+    ignored.each_partner(numbers[i], [&](BodySlot partner) {
+      for (const BodySlot other : {slot_among(taken, partner), slot_among(known, partner)}) {
+        if (other != no_body) bodies_.ignore(taken[i], other, true);
+      }
+    });
+  }
 }
 
 template <class Motion>
@@ -67,32 +91,27 @@ std::vector<typename Engine<Motion>::Overlap> Engine<Motion>::overlaps() const {
 }
 
 template <class Motion>
-void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) requires(!turns<Motion>) {
-  bodies_.go_on_from(slot, progress);
+void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) {
+  bodies_.move(slot, progress.motion);
+  bodies_[slot].meetings = progress.meetings, bodies_[slot].burst_start = progress.burst_start;
+  tumbling_.go_on_from(slot, progress.turning);
 }
 
 template <class Motion>
-void Engine<Motion>::note_meeting(BodySlot slot) requires(!turns<Motion>) {
-  if constexpr (!turns<Motion>) resting_.note_meeting(slot);
-}
-
-template <class Motion>
-bool Engine<Motion>::has_met(BodySlot slot) const requires(!turns<Motion>) {
-  if constexpr (turns<Motion>) {
-    return false;
-  } else {
-    return resting_.has_met(slot);
+void Engine<Motion>::note_passed(double t) {
+  for (const BodySlot slot : bodies_.take_waiting(bodies_.waiting().size())) bodies_[slot].entered = true;
+  while (scripts_.next_time() <= t) {
+    for (const auto& [slot, motion] : scripts_.take_next()) {
+      bodies_.accelerate_freely(slot, motion);
+      bodies_[slot].entered = true;
+      for (const BodySlot sensor : bodies_.attachments().sensors(slot)) bodies_[sensor].entered = true;
+    }
   }
+  while (timers_.next_time() <= t) timers_.take_next();
 }
 
 template <class Motion>
-void Engine<Motion>::note_entered() {
-  bodies_.take_waiting(bodies_.waiting().size());
-  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) bodies_[slot].entered = bodies_.alive(slot);
-}
-
-template <class Motion>
-void Engine<Motion>::set_aside() requires(!turns<Motion>) {
+void Engine<Motion>::set_aside() {
   change_or_fail([&] {
     pairs_.clear();
     walls_.forget_all();
@@ -102,15 +121,16 @@ void Engine<Motion>::set_aside() requires(!turns<Motion>) {
 }
 
 template <class Motion>
-void Engine<Motion>::go_on(double t, std::span<const Overlap> overlaps) requires(!turns<Motion>) {
+void Engine<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
   change_or_fail([&] {
     clock_ = {t, t + options_.window};
     callers_now_ = t;
     count_edit();
     bodies_.take_waiting(bodies_.waiting().size());
     for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-      if (bodies_.alive(slot) && !bodies_[slot].entered) bodies_.wait(slot);
+      if (bodies_.alive(slot) && !bodies_[slot].entered && has_begun(slot)) bodies_.wait(slot);
     }
+    tumbling_.go_on();
     walls_.become();
     rebuild_broad_phase();
     go_on_overlapping(overlaps);

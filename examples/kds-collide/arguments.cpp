@@ -290,9 +290,6 @@ void check(const Arguments& arguments, const Scene& scene) {
   if (arguments.run.rate * (scene.end_time - scene.begin_time) > most_results) {
     throw ArgumentError("--rate: asks for more than 1e12 results");
   }
-  if (scene.turning && (arguments.run.domains != 1 || arguments.run.processes)) {
-    throw ArgumentError("--domains: a scene in which bodies turn is not divided");
-  }
   const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
   const auto check_input = [&](const std::string& file, const std::string& where) {
     for (const auto& [option, path] : outputs(arguments)) {

@@ -103,8 +103,8 @@ class Scene:
         and there are no pairs and no replay. Other threads go on meanwhile. OSError for files that cannot be written;
         RuntimeError where a replay wants three.js, which is not there.
         """
-        if domains != 1 and (pairs or replay is not None or self.turning):
-            what = "pairs are told of" if pairs else "bodies turn" if self.turning else "there is a replay"
+        if domains != 1 and (pairs or replay is not None):
+            what = "pairs are told of" if pairs else "there is a replay"
             raise ValueError(f"domains: must be 1 where {what}")
         rows, stats = self._core.run(
             word("broad_phase", broad_phase),

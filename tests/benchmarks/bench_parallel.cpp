@@ -1,9 +1,11 @@
-// What a scene in domains costs beside one world: gases of balls, with one thread and with two.
+// What a scene in domains costs beside one world: gases of balls, and of bricks that precess, with one thread and with
+// two.
 //
 //     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
 //
-// The balls (elastic_gas.hpp) run until each has had some contacts. One world and the same scene in domains take turns;
-// the best of the rounds counts. The number of contacts and a hash of all of them must be the same.
+// The bodies (elastic_gas.hpp) run until each has had some contacts; of bricks an eighth as many, for as long.
+// One world and the same scene in domains take turns; the best of the rounds counts. The number of contacts and a hash
+// of all of them must be the same.
 
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
@@ -49,9 +51,10 @@ struct ContactHash {
     }
   }
 };
-struct WorldHash final : WorldListener<1> {
+template <class Motion>
+struct WorldHash final : BasicWorldListener<Motion> {
   ContactHash of;
-  void contact(World<1>&, const PairEvent& event) override { of.add(event); }
+  void contact(BasicWorld<Motion>&, const PairEvent& event) override { of.add(event); }
 };
 struct DividedHash final : ParallelListener {
   ContactHash of;
@@ -67,20 +70,42 @@ struct Time {
   }
 };
 
-template <class World>
-void run(World& world, const ElasticGas& gas, double end, Time& time) {
+using Balls = kds::certificates::PointMotion<1>;
+using Bricks = kds::certificates::RigidMotion<1>;
+
+std::vector<BasicBodyDescription<Balls>> bodies_of(const ElasticGas& gas, Balls) { return gas.bodies; }
+
+/// In the places of the balls, turning at about the speed at which they move.
+std::vector<BasicBodyDescription<Bricks>> bodies_of(const ElasticGas& gas, Bricks) {
+  std::vector<BasicBodyDescription<Bricks>> bricks;
+  for (const auto& ball : gas.bodies) {
+    Bricks motion;
+    motion.path = ball.motion[0];
+    const Eigen::Vector3d& speed = motion.path.coefficients[1];
+    motion.angular_velocity = {2 * speed[1], 2 * speed[2], 2 * speed[0]};
+    BasicBodyDescription<Bricks> brick;
+    brick.shape = kds::collision::Box{{0.4, 0.2, 0.15}};
+    brick.motion = {motion};
+    bricks.push_back(brick);
+  }
+  return bricks;
+}
+
+template <class World, class Bodies>
+void run(World& world, const Bodies& bodies, double end, Time& time) {
   const double begin = wall_seconds();
-  world.reserve(gas.bodies.size());
-  for (const auto& ball : gas.bodies) world.add_body(ball);
+  world.reserve(bodies.size());
+  for (const auto& body : bodies) world.add_body(body);
   world.advance_to(0);
   const double entered = wall_seconds(), cpu = cpu_seconds();
   world.advance_to(end);
   time.note(entered - begin, wall_seconds() - entered, cpu_seconds() - cpu);
 }
 
-void measure(std::ofstream& csv, std::size_t bodies, double packing) {
+template <class Motion>
+void measure(std::ofstream& csv, const char* kind, std::size_t bodies, double packing, double end) {
   const ElasticGas scene = kds::benchmarks::elastic_gas(bodies, packing);
-  const double end = end_of(packing);
+  const auto descriptions = bodies_of(scene, Motion());
   Time whole;
   struct Way {
     std::size_t threads, domains;
@@ -91,13 +116,13 @@ void measure(std::ofstream& csv, std::size_t bodies, double packing) {
   if (bodies >= 100'000) ways.push_back({1, 8}), ways.push_back({2, 8});
   const int rounds = bodies >= 300'000 ? 2 : 3;
   for (int round = 0; round < rounds; ++round) {
-    WorldHash right;
-    World<1> world(scene.options, &right);
-    run(world, scene, end, whole);
+    WorldHash<Motion> right;
+    BasicWorld<Motion> world(scene.options, &right);
+    run(world, descriptions, end, whole);
     for (Way& way : ways) {
       DividedHash hash;
-      ParallelWorld<1> divided(scene.options, {.threads = way.threads, .domains = way.domains}, &hash);
-      run(divided, scene, end, way.time);
+      BasicParallelWorld<Motion> divided(scene.options, {.threads = way.threads, .domains = way.domains}, &hash);
+      run(divided, descriptions, end, way.time);
       way.counters = divided.counters();
       if (hash.of.hash != right.of.hash) throw std::runtime_error("a scene in domains has other contacts");
     }
@@ -107,8 +132,8 @@ void measure(std::ofstream& csv, std::size_t bodies, double packing) {
     const auto ratio = [](std::uint64_t a, std::uint64_t b) {
       return b ? static_cast<double>(a) / static_cast<double>(b) : 1;
     };
-    tell(csv, "%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu\n", bodies, packing, way.threads,
-         way.domains, static_cast<unsigned long long>(c.contacts), whole.entry_wall, whole.run_wall,
+    tell(csv, "%s,%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu\n", kind, bodies, packing,
+         way.threads, way.domains, static_cast<unsigned long long>(c.contacts), whole.entry_wall, whole.run_wall,
          way.time.entry_wall, way.time.run_wall, whole.run_wall / way.time.run_wall, way.time.run_cpu / whole.run_cpu,
          ratio(c.bodies_known, c.bodies_owned), ratio(c.events_computed, c.contacts + c.wall_contacts),
          static_cast<unsigned long long>(c.windows), static_cast<unsigned long long>(c.windows_failed));
@@ -121,13 +146,16 @@ int main(int argc, char** argv) {
   try {
     std::ofstream csv = kds::benchmarks::open_csv(argc > 1 ? argv[1] : ".", "parallel.csv");
     tell(csv,
-         "bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
+         "kind,bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
          "known_per_owned,computed_per_event,windows,failed\n");
     std::vector<std::size_t> sizes;
     for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
     if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};
     for (const double packing : {0.25, 0.01}) {
-      for (const std::size_t bodies : sizes) measure(csv, bodies, packing);
+      for (const std::size_t bodies : sizes) {
+        measure<Balls>(csv, "balls", bodies, packing, end_of(packing));
+        measure<Bricks>(csv, "bricks", bodies / 8, packing, end_of(packing));
+      }
     }
   } catch (const std::exception& error) {
     std::fprintf(stderr, "bench_parallel: %s\n", error.what());

@@ -112,7 +112,7 @@ TEST_CASE("command line: all broad phases write the same events of generated sce
 
 TEST_CASE("command line: scenes that are divided have the same events and the same numbers of them") {
   const TemporaryFolder folder;
-  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes"));
+  const auto kind = std::string(GENERATE(as<std::string>(), "rings", "spheres", "boxes", "spinning-rings"));
   INFO(kind);
   REQUIRE(kds_collide_in(folder, "--generate " + kind + " --bodies 300 --density 0.1 --seed 5").code == 0);
   const auto events = [&](const std::string& options) {

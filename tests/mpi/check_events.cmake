@@ -12,6 +12,21 @@ if(NOT one STREQUAL several)
   message(FATAL_ERROR "the events of ${PROCESSES} processes are not those of one world: ${FOLDER}/several.csv")
 endif()
 
+# The same of bodies that turn.
+run("${TOOL}" --generate spinning-rings --bodies 200 --density 0.1 --seed 5 --output rings.json --quiet)
+run("${TOOL}" rings.json --until 3 --events one_turning.csv --quiet)
+run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" rings.json --until 3 --domains 4 --events several_turning.csv
+  --stats turning.json --quiet)
+file(READ "${FOLDER}/one_turning.csv" one_turning)
+file(READ "${FOLDER}/several_turning.csv" several_turning)
+file(READ "${FOLDER}/turning.json" stats)
+string(JSON domains GET "${stats}" domains)
+string(JSON contacts GET "${stats}" contacts)
+if(NOT one_turning STREQUAL several_turning OR NOT domains EQUAL 4 OR contacts LESS 20)
+  message(FATAL_ERROR "the events of ${PROCESSES} processes are not those of one world: ${FOLDER}/several_turning.csv, "
+                      "or too little has happened: ${stats}")
+endif()
+
 # A run that has ended early goes on from its last checkpoint, with as many processes as there are then. What it had
 # written after that is dropped.
 run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events parts.csv --checkpoint run.state
@@ -46,5 +61,3 @@ endfunction()
 refuses(2 "kds-collide-mpi: SCENE: is missing")
 refuses(2 "missing.json: file: cannot be read: No such file or directory" missing.json)
 refuses(2 "kds-collide-mpi: --domains: there are no pictures of a scene that is divided" balls.json --view page.html)
-run("${TOOL}" --generate spinners --bodies 20 --output spinners.json --quiet)
-refuses(2 "kds-collide-mpi: --domains: a scene in which bodies turn is not divided" spinners.json)

@@ -84,13 +84,22 @@ class Scenes(unittest.TestCase):
         self.assertTrue(scene.turning)
         short, long = (len(scene.run(shortest_flight=s).events) for s in (1e-3, 4e-3))
         self.assertLess(long, short)
-        with self.assertRaisesRegex(ValueError, "domains: must be 1 where bodies turn"):
-            scene.run(domains=2)
+        whole, divided = (scene.run(domains=domains, threads=2) for domains in (1, 2))
+        self.assertEqual(divided.events.tobytes(), whole.events.tobytes())
+
+    def test_bodies_that_turn_in_domains(self):
+        scene = kds.generate_scene(self.path("turning.json"), "spinning-rings", 60, density=0.05, seed=3, end_time=3)
+        self.assertTrue(scene.turning)
+        whole = scene.run()
+        self.assertGreater(len(whole.events), 10)
+        divided = scene.run(domains=3, threads=2)
+        self.assertEqual(divided.events.tobytes(), whole.events.tobytes())
+        self.assertEqual(divided.stats["domains"], 3)
 
     def test_nothing_is_left_behind(self):
         scene = kds.generate_scene(self.path("boxes.json"), "boxes", 5)
         before = sorted(os.listdir(self.folder))
-        with self.assertRaisesRegex(ValueError, "broad-phase"):
+        with self.assertRaisesRegex(ValueError, "broad_phase: there is no \"none\""):
             scene.run(broad_phase="none", csv=self.path("events.csv"))
         with self.assertRaisesRegex(ValueError, "broad_phase: must be one of"):
             scene.world(broad_phase="none")

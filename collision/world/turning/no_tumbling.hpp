@@ -29,6 +29,16 @@ requires(!turns<Motion>) class Tumbling<Motion> {
   static Piece take_next() { return {}; }
   static void audit(double) {}
 
+  struct Progress {
+    template <class Archive>
+    void archive(Archive&) {}
+    friend bool same_bits(const Progress&, const Progress&) { return true; }
+  };
+  static Progress progress(BodySlot) { return {}; }
+  static void take_in(BodySlot, const Tumbling&, BodySlot) {}
+  static void go_on_from(BodySlot, const Progress&) {}
+  static void go_on() {}
+
   struct Image {
     template <class Archive>
     void archive(Archive&) {}

@@ -202,6 +202,26 @@ void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies
 }
 
 template <class Motion>
+void Tumbling<Motion>::take_in(BodySlot slot, const Tumbling& from, BodySlot of) {
+  if (!from.has(of)) return;
+  add(slot, from.of_[of]->inertia);
+  of_[slot] = from.of_[of];
+  set_end(slot, of_[slot]->ends);
+}
+
+template <class Motion>
+void Tumbling<Motion>::go_on_from(BodySlot slot, const Progress& progress) {
+  if (!progress.body()) return;
+  of_[slot] = *progress.body();
+  bodies_[slot].turns_until = of_[slot]->ends;
+}
+
+template <class Motion>
+void Tumbling<Motion>::go_on() {
+  become(image());
+}
+
+template <class Motion>
 void Tumbling<Motion>::become(const Image& image) {
   of_ = image.of;
   ends_.resize(0);

@@ -10,10 +10,12 @@
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
+#include "kds/framework/snapshot.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -113,6 +115,44 @@ class Tumbling {
 
   /// Throws AuditFailure if a motion is off its free rotation by more than it may be, or a piece is over.
   void audit(double t) const;
+
+  /// How far a body has come, for a world that has the same body; nothing of one that does not precess.
+  class Progress {
+   public:
+    Progress() = default;
+    explicit Progress(const Body& body) : body_(std::make_shared<const Body>(body)) {}
+    const Body* body() const { return body_.get(); }
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      bool precesses = body_ != nullptr;
+      archive(precesses);
+      if (!precesses) return;
+      Body body = body_ ? *body_ : Body{};
+      archive(body);
+      if constexpr (Archive::loading) body_ = std::make_shared<const Body>(body);
+    }
+    friend bool same_bits(const Progress& a, const Progress& b) {
+      if (!a.body_ || !b.body_) return !a.body_ && !b.body_;
+      return bytes_of(*a.body_) == bytes_of(*b.body_);
+    }
+
+   private:
+    static std::vector<char> bytes_of(Body body) {
+      kds::detail::Writer writer;
+      writer(body);
+      return writer.take();
+    }
+
+    std::shared_ptr<const Body> body_;
+  };
+  Progress progress(BodySlot slot) const { return has(slot) ? Progress(*of_[slot]) : Progress(); }
+  /// A body of another world comes, and precesses as it does there.
+  void take_in(BodySlot slot, const Tumbling& from, BodySlot of);
+  /// A body has come so far in another world. For different bodies it may be called by several threads at once. Before
+  /// the next piece is asked for, go_on().
+  void go_on_from(BodySlot slot, const Progress& progress);
+  void go_on();
 
   /// All of it, as plain data.
   struct Image {

@@ -25,6 +25,13 @@ typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlo
   return it != pairs_.end() && it->second.rests ? 0 : none;
 }
 
+/// When bodies were looked at, and what has struck them, counts only while they are calm, or rest.
+template <class Motion>
+bool TurningRest<Motion>::remembers_nothing() const {
+  return pairs_.empty() && woken_.empty() &&
+         std::all_of(of_.begin(), of_.end(), [](const Member& member) { return member.since == never; });
+}
+
 template <class Motion>
 typename TurningRest<Motion>::Pair& TurningRest<Motion>::pair(Key key) {
   const auto [it, is_new] = pairs_.try_emplace(key);
@@ -226,6 +233,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     }
     return false;
   }
+  if (bodies_.numbered()) throw RestsInPart();
   note({a, b}, contact);
   bool long_enough = true, patient = true;
   for (const BodySlot slot : {a, b}) {

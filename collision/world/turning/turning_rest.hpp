@@ -87,6 +87,10 @@ class TurningRest {
   TurningRest& operator=(const TurningRest&) = delete;
 
   bool empty() const { return resting_ == 0; }
+  /// Whether nothing is remembered that decides what comes to rest later.
+  bool remembers_nothing() const;
+  static bool has_met(BodySlot) { return false; }
+  static void note_meeting(BodySlot) {}
   bool holds(BodySlot a, BodySlot b, int = -1) const { return find(a, b) != none; }
   /// Not `none` if a and b (a < b) rest on each other.
   Slot find(BodySlot a, BodySlot b, int = -1) const;

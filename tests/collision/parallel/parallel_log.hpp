@@ -11,7 +11,7 @@
 namespace kds::collision::tests {
 
 /// Writes down what EventLog writes down, then calls `then`, if there is one.
-struct ParallelLog final : ParallelListener {
+struct ParallelLog : ParallelListener {
   std::vector<Event> events;
   std::function<void(const Event&)> then;
 

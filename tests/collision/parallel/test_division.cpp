@@ -34,6 +34,7 @@ Bodies<certificates::PointMotion<1>> lattice(int side) {
   }
   add(tests::fixed_body<1>(Box{{100, 100, 0.5}}, tests::motion<1>({0, 0, -2})));
   add(tests::fixed_body<1>(Sphere{1}, tests::motion<1>({3, 3, 3}, {1, 0, 0})));
+  add(tests::fixed_body<1>(Sphere{0.125}, tests::motion<1>({3, 3, 3}, {1, 0, 0})));
   return bodies;
 }
 
@@ -41,16 +42,20 @@ Bodies<certificates::PointMotion<1>> lattice(int side) {
 
 TEST_CASE("Division: bodies are owned where they are, and known as far as the halo", "[parallel]") {
   const auto bodies = lattice(12);
-  const auto division = divide(bodies, 0, {.domains = 4, .halo = 2}, 1);
+  const auto division = divide(bodies, {}, 0, {.domains = 4, .halo = 2}, 1);
   REQUIRE(division);
   CHECK(division->partition.size() == 4);
-  CHECK(division->greatest_radius == 1);  // of what moves, whoever moves it
-  CHECK(division->halo == Approx(2 + 2 * 11.0 / 12).epsilon(1e-3));
+  CHECK(division->greatest_radius == 0.25);  // of what has an owner
+  CHECK(division->halo == Approx(0.5 + 2 * 11.0 / 12).epsilon(1e-3));
   CHECK(division->greatest_speed <= 2);
-  const BodySlot plate = 12 * 12 * 12, sphere = plate + 1;
+  const BodySlot plate = 12 * 12 * 12, large = plate + 1, small = plate + 2;
   CHECK(division->owner[plate] == Division::nobody);
   CHECK(division->knowers(plate).size() == 4);
-  CHECK(division->owner[sphere] != Division::nobody);
+  // No other body changes how these move: the larger one is known everywhere.
+  CHECK(division->owner[large] == Division::nobody);
+  CHECK(division->is_everywhere(large));
+  CHECK(division->owner[small] != Division::nobody);
+  CHECK_FALSE(division->is_everywhere(small));
   std::size_t copies = 0;
   for (BodySlot slot = 0; slot < plate; ++slot) {
     const Vector3d place = bodies.path(slot).position(0);
@@ -66,7 +71,7 @@ TEST_CASE("Division: bodies are owned where they are, and known as far as the ha
 
 TEST_CASE("Division: into many domains, whose halos reach over several cells", "[parallel]") {
   const auto bodies = lattice(12);
-  const auto division = divide(bodies, 0, {.domains = 500, .halo = 1.5}, 1);
+  const auto division = divide(bodies, {}, 0, {.domains = 500, .halo = 1.5}, 1);
   REQUIRE(division);
   const std::size_t domains = division->partition.size();
   CHECK(domains == 500);
@@ -84,11 +89,11 @@ TEST_CASE("Division: into many domains, whose halos reach over several cells", "
   CHECK(most > 30);
   CHECK(most < 400);
   CHECK(division->knowers(12 * 12 * 12).size() == domains);  // the plate
-  CHECK(division->sets.size() < domains + 12 * 12 * 12 + 3);
+  CHECK(division->sets.size() < domains + 12 * 12 * 12 + 4);
 
   // A body may come out of its cell by a halo, into the halo of another.
   for (const std::size_t index : {0u, 137u, 499u}) {
-    const Domain<certificates::PointMotion<1>> domain(WorldOptions(), *division, index, 0, false);
+    const Domain<certificates::PointMotion<1>> domain(WorldOptions(), *division, index, 0, false, index == 0);
     std::vector<DomainIndex> near, neighbours;
     for (std::size_t i = 0; i < domains; ++i) {
       const double distance = outside(division->partition.cell(i), division->partition.cell(index));
@@ -126,9 +131,9 @@ TEST_CASE("Division: a scene has one domain where more would not pay, or places 
   CHECK(domains_wanted({}, 100, 10'000'000) == 100);
   CHECK(domains_wanted({}, 100'000, 10'000'000'000) == most_domains);
   CHECK(domains_wanted({.domains = 5}, 2, 10) == 5);
-  CHECK_FALSE(divide(bodies, 0, {}, 2));  // too few bodies
-  CHECK_FALSE(divide(bodies, 1e9, {.domains = 2, .halo = 1e-9}, 2));
-  CHECK_FALSE(divide(Bodies<certificates::PointMotion<1>>(), 0, {.domains = 2}, 2));
+  CHECK_FALSE(divide(bodies, {}, 0, {}, 2));  // too few bodies
+  CHECK_FALSE(divide(bodies, {}, 1e9, {.domains = 2, .halo = 1e-9}, 2));
+  CHECK_FALSE(divide(Bodies<certificates::PointMotion<1>>(), {}, 0, {.domains = 2}, 2));
 }
 
 }  // namespace kds::collision::test_division

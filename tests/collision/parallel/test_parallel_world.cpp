@@ -2,6 +2,7 @@
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/event_log.hpp"
+#include "tests/collision/parallel/compared_runs.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
 #include "tests/collision/parallel/trials.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -19,55 +20,23 @@ namespace kds::collision::test_parallel_world {
 namespace {
 
 using Eigen::Vector3d;
+using tests::compare_runs;
 using tests::Event;
 using tests::EventLog;
-using tests::Kind;
 using tests::lattice;
 using tests::ParallelLog;
 using tests::Random;
+using tests::Seen;
 using tests::Trial;
 using tests::trial;
 
-/// What the runs of a test did in all, so that it is seen that there was something to go wrong.
-struct Seen {
-  std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, corrected = 0;
-};
-
 template <int Degree>
 void compare(const Trial<Degree>& trial, const ParallelOptions& parallel, std::size_t polls, Seen& seen) {
-  INFO(trial.what << ", " << parallel.domains << " domains, halo " << parallel.halo << ", longest window "
-                  << parallel.longest_window << ", polls " << polls);
-  EventLog<Degree> right;
-  World<Degree> world(trial.options, &right);
-  for (const auto& body : trial.scene.bodies) world.add_body(body);
-  world.advance_to(trial.scene.end_time);
-
-  ParallelLog log;
-  ParallelWorld<Degree> divided(trial.options, parallel, &log);
-  for (const auto& body : trial.scene.bodies) divided.add_body(body);
-  for (std::size_t poll = 1; poll < polls; ++poll) {
-    divided.advance_to(trial.scene.end_time * static_cast<double>(poll) / static_cast<double>(polls));
-  }
-  divided.advance_to(trial.scene.end_time);
-  std::erase_if(right.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
-  const std::size_t first = tests::first_difference(right.events, log.events);
-  const bool same = first == right.events.size() && first == log.events.size();
-  if (!same) {
-    UNSCOPED_INFO("events " << right.events.size() << " and " << log.events.size() << ", the first that differs is "
-                            << first);
-    if (first < right.events.size()) UNSCOPED_INFO("right: " << right.events[first]);
-    if (first < log.events.size()) UNSCOPED_INFO("wrong: " << log.events[first]);
-  }
-  REQUIRE(same);
-  const WorldCounters counters = world.counters();
-  const ParallelCounters told = divided.counters();
-  REQUIRE(told.contacts == counters.contacts);
-  REQUIRE(told.separations == counters.separations);
-  REQUIRE(told.overlaps == counters.overlaps);
-  REQUIRE(told.wall_contacts == counters.wall_contacts);
-  for (BodyId id = 0; id < trial.scene.bodies.size(); ++id) REQUIRE(divided.motion(id) == world.motion(id));
-  seen.events += log.events.size(), seen.windows += told.windows, seen.failed += told.windows_failed;
-  seen.whole += told.stretches_whole, seen.corrected += told.copies_corrected;
+  const auto fill = [&](World<Degree>& world) {
+    for (const auto& body : trial.scene.bodies) world.add_body(body);
+  };
+  compare_runs<certificates::PointMotion<Degree>>({trial.options, fill, trial.scene.end_time, trial.what},
+                                                  {.parallel = parallel, .polls = polls}, seen);
 }
 
 template <int Degree>
@@ -91,8 +60,7 @@ void compare_seeds(std::uint64_t first, std::uint64_t count, std::size_t least_d
 TEMPLATE_TEST_CASE_SIG("A world in domains has the events of one world", "[parallel]", ((int Degree), Degree), 1, 2) {
   Seen seen;
   compare_seeds<Degree>(1, 60, 2, 8, seen);
-  INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
-                 << seen.whole << ", copies corrected " << seen.corrected);
+  INFO(seen.text());
   CHECK(seen.windows > 100);
   CHECK(seen.corrected > 25);
   CHECK(seen.events > 4000);
@@ -102,8 +70,7 @@ TEMPLATE_TEST_CASE_SIG("Several hundred domains have the events of one world", "
                        2) {
   Seen seen;
   compare_seeds<Degree>(1001, 15, 65, 400, seen);
-  INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
-                 << seen.whole << ", copies corrected " << seen.corrected);
+  INFO(seen.text());
   CHECK(seen.windows > 30);
   CHECK(seen.corrected > 25);
   CHECK(seen.events > 500);
@@ -202,8 +169,6 @@ TEST_CASE("Domains: bodies that are added, removed and moved between windows, an
     const std::size_t before = log.events.size();
     world.advance_to(2.5), divided.advance_to(2.5), loaded.advance_to(2.5);
     INFO("seed " << seed);
-    std::erase_if(right.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
-    std::erase_if(later.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
     REQUIRE(log.events == right.events);
     REQUIRE(later.events ==
             std::vector<Event>(log.events.begin() + static_cast<std::ptrdiff_t>(before), log.events.end()));
@@ -244,7 +209,6 @@ TEST_CASE("Domains: what comes to rest, and what a listener throws, loses nothin
     }
   }
   CHECK(thrown > 3);
-  std::erase_if(right.events, [](const Event& e) { return e.kind == Kind::rests || e.kind == Kind::wakes; });
   CHECK(log.events == right.events);
 }
 

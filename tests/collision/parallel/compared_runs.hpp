@@ -1,0 +1,144 @@
+// Scenes of all that is divided, run as one world and in domains, which have to agree.
+#pragma once
+
+#include "collision/parallel/parallel_world.hpp"
+#include "kds/framework/snapshot.hpp"
+#include "tests/collision/parallel/parallel_log.hpp"
+#include "tests/collision/parallel/thread_processes.hpp"
+#include "tests/collision/random_scenes.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace kds::collision::tests {
+
+/// A scene: a function that adds the bodies to a world, and does what else callers do.
+template <class Motion>
+struct Staging {
+  WorldOptions options;
+  std::function<void(BasicWorld<Motion>&)> fill;
+  double end_time = 1;
+  std::string what;
+};
+
+/// How it is run in domains.
+struct Manner {
+  ParallelOptions parallel;
+  std::size_t processes = 1;
+  std::size_t polls = 1;  ///< calls of advance_to(); before the last the world is saved
+};
+
+/// What the runs of a test did in all, so that it is seen that there was something to go wrong.
+struct Seen {
+  std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, corrected = 0, copies = 0, divided = 0;
+
+  void add(const ParallelCounters& of, std::size_t logged) {
+    events += logged, windows += of.windows, failed += of.windows_failed, whole += of.stretches_whole;
+    corrected += of.copies_corrected, copies += of.copies_made, divided += of.windows > 0;
+  }
+  std::string text() const {
+    std::ostringstream out;
+    out << "events " << events << ", windows " << windows << ", failed " << failed << ", stretches whole " << whole
+        << ", copies " << copies << ", corrected " << corrected << ", runs with windows " << divided;
+    return out.str();
+  }
+};
+
+/// What a ParallelLog writes down, and what begins and ceases to rest.
+struct DividedLog final : ParallelLog {
+  void rests(const PairEvent& e) override { note({Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(const PairEvent& e) override { note({Kind::wakes, e.a, e.b, e.contact}); }
+};
+
+/// The same of a World.
+template <class Motion>
+struct WholeLog final : BasicWorldListener<Motion> {
+  using W = BasicWorld<Motion>;
+
+  std::vector<Event> events;
+
+  void contact(W&, const PairEvent& e) override { events.push_back({Kind::contact, e.a, e.b, e.contact}); }
+  void separation(W&, const PairEvent& e) override { events.push_back({Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(W&, const PairEvent& e) override { events.push_back({Kind::overlap, e.a, e.b, e.contact}); }
+  void wall(W&, const WallEvent& e) override {
+    events.push_back({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+  }
+  void rebound_suppressed(W&, const PairEvent& e) override {
+    events.push_back({Kind::rebound_suppressed, e.a, e.b, e.contact});
+  }
+  void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
+};
+
+inline void require_same(const std::vector<Event>& right, const std::vector<Event>& log, const std::string& what) {
+  const std::size_t first = first_difference(right, log);
+  if (first == right.size() && first == log.size()) return;
+  std::ostringstream text;
+  text << what << ": events " << right.size() << " and " << log.size() << ", the first that differs is " << first;
+  if (first < right.size()) text << "\nright: " << right[first];
+  if (first < log.size()) text << "\nwrong: " << log[first];
+  throw std::runtime_error(text.str());
+}
+
+/// Throws std::runtime_error, and says what differs, unless the events of the run in domains are those of one world,
+/// and so are the motions at the end, and the later events of a world that is loaded from what was saved on the way.
+template <class Motion>
+void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen) {
+  std::ostringstream how;
+  how << scene.what << ", " << manner.processes << " processes, " << manner.parallel.threads << " threads, "
+      << manner.parallel.domains << " domains, halo " << manner.parallel.halo << ", longest window "
+      << manner.parallel.longest_window << ", polls " << manner.polls;
+  const std::string what = how.str();
+  WholeLog<Motion> right;
+  BasicWorld<Motion> world(scene.options, &right);
+  scene.fill(world);
+  world.advance_to(scene.end_time);
+
+  const auto run = [&](Processes* processes) {
+    DividedLog log;
+    BasicParallelWorld<Motion> divided(scene.options, manner.parallel, &log, processes);
+    scene.fill(divided.whole());
+    const std::size_t rank = processes ? processes->rank() : 0;
+    for (std::size_t poll = 1; poll < manner.polls; ++poll) {
+      divided.advance_to(scene.end_time * static_cast<double>(poll) / static_cast<double>(manner.polls));
+      if (poll + 1 < manner.polls) continue;
+      const Snapshot saved = save(divided);
+      WholeLog<Motion> later;
+      BasicWorld<Motion> loaded(scene.options, &later);
+      restore(saved, loaded);
+      loaded.audit();
+      loaded.advance_to(scene.end_time);
+      // Other processes than the first have not been told of what was before.
+      std::vector<Event> all = log.events;
+      if (rank > 0)
+        all.assign(right.events.begin(), right.events.end() - static_cast<std::ptrdiff_t>(
+                                                                  std::min(later.events.size(), right.events.size())));
+      all.insert(all.end(), later.events.begin(), later.events.end());
+      require_same(right.events, all, what + ", as it was saved");
+    }
+    divided.advance_to(scene.end_time);
+    if (rank == 0) require_same(right.events, log.events, what);
+    const ParallelCounters told = divided.counters();
+    const WorldCounters counters = world.counters();
+    if (told.contacts != counters.contacts || told.separations != counters.separations ||
+        told.overlaps != counters.overlaps || told.wall_contacts != counters.wall_contacts) {
+      throw std::runtime_error(what + ": the counts differ");
+    }
+    auto& whole = divided.whole();
+    for (BodyId id = 0; id < world.size(); ++id) {
+      if (whole.motion(id) == world.motion(id)) continue;
+      throw std::runtime_error(what + ": the motion of body " + std::to_string(id) + " differs");
+    }
+    if (rank == 0) seen.add(told, log.events.size());
+  };
+  if (manner.processes == 1) return run(nullptr);
+  ThreadProcesses(manner.processes).run([&](Processes& processes) { run(&processes); });
+}
+
+}  // namespace kds::collision::tests

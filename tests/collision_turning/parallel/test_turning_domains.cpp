@@ -1,0 +1,86 @@
+// Bodies that turn, in domains: the events are those of one world, bit for bit.
+#include "tests/collision/parallel/stagings.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision::test_turning_domains {
+namespace {
+
+using certificates::RigidMotion;
+using Eigen::Vector3d;
+using tests::compare_runs;
+using tests::compare_stagings;
+using tests::Manner;
+using tests::Random;
+using tests::Seen;
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn have the events of one world", "[parallel]", ((int Degree), Degree),
+                       1, 2) {
+  Seen seen;
+  compare_stagings<RigidMotion<Degree>>(1, 24, 6, seen);
+  compare_stagings<RigidMotion<Degree>>(1001, 2, 100, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 500);
+  CHECK(seen.divided > 8);
+  CHECK(seen.windows > 40);
+  CHECK(seen.corrected > 10);
+}
+
+TEST_CASE("Domains: rods that precess go from domain to domain", "[parallel]") {
+  const auto fill = [](TurningWorld<1>& world) {
+    Random random(5);
+    for (int i = 0; i < 60; ++i) {
+      TurningWorld<1>::Description rod{.shape = Box{{0.5, 0.125, 0.0625}}};
+      const double x = random.between(-3, 3), y = random.between(-1, 1), z = random.between(-1, 1);
+      RigidMotion<1> motion{{{Vector3d(0.75 * i, i % 3, 0), Vector3d(2 * x, y, z)}}};
+      motion.angular_velocity = Vector3d(3 * y, 2 * z, 2 + x);
+      rod.motion = {motion};
+      world.add_body(rod);
+    }
+  };
+  WorldOptions options = tests::with_response(Response::elastic);
+  options.walls = Walls{Vector3d(-1, -1, -0.75), Vector3d(46, 3, 0.75)};
+  Seen seen;
+  for (const std::size_t processes : {1u, 3u}) {
+    Manner manner{.processes = processes, .polls = 3};
+    manner.parallel.threads = 2, manner.parallel.domains = 5, manner.parallel.halo = 1.5;
+    compare_runs<RigidMotion<1>>({options, fill, 4, "rods"}, manner, seen);
+  }
+  INFO(seen.text());
+  CHECK(seen.divided == 2);
+  CHECK(seen.copies > 20);
+  CHECK(seen.events > 100);
+}
+
+TEST_CASE("Domains: balls that turn fall, and what comes to rest makes the scene one world", "[parallel]") {
+  const auto fill = [](TurningWorld<2>& world) {
+    for (int i = 0; i < 40; ++i) {
+      TurningWorld<2>::Description ball{.shape = Sphere{0.25}, .restitution = 0.3, .friction = 0.5};
+      RigidMotion<2> motion;
+      motion.path.coefficients = {Vector3d(i, 0, 0.5 + 0.03 * i), Vector3d::Zero(), Vector3d(0, 0, -5)};
+      ball.motion = {motion};
+      world.add_body(ball);
+    }
+    TurningWorld<2>::Description floor{.shape = HalfSpace{{0, 0, 1}}, .fixed = true, .friction = 0.5};
+    floor.motion = {RigidMotion<2>{}};
+    world.add_body(floor);
+  };
+  Seen seen;
+  for (const std::size_t processes : {1u, 2u}) {
+    Manner manner{.processes = processes, .polls = 2};
+    manner.parallel.threads = 2, manner.parallel.domains = 4, manner.parallel.halo = 1;
+    manner.parallel.longest_window = 0.004;
+    compare_runs<RigidMotion<2>>({tests::with_response(Response::elastic), fill, 1, "falling"}, manner, seen);
+  }
+  INFO(seen.text());
+  CHECK(seen.windows > 0);
+  CHECK(seen.whole > 0);
+  CHECK(seen.events > 100);
+}
+
+}  // namespace kds::collision::test_turning_domains
