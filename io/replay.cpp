@@ -184,7 +184,7 @@ void append_frames(std::string& text, const kds::collision::MeshScript& script, 
 
 std::string read_script(const std::filesystem::path& folder, const char* name) {
   if (auto script = three_script(folder, name)) return *std::move(script);
-  throw ReplayError("--view: three.js: " + (folder.empty() ? std::string(name) : (folder / name).string()) +
+  throw ReplayError("replay: three.js: " + (folder.empty() ? std::string(name) : (folder / name).string()) +
                     " is not there; install it (Debian and Ubuntu: the package libjs-three) and configure again");
 }
 

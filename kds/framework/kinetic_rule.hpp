@@ -58,6 +58,8 @@ concept Follows = OuterRule<R> && ReportsChanges<typename R::Inner> &&
   { rule.follow(changes, repair) } -> std::same_as<Effect>;
 };
 template <class R>
+concept TakesElements = Follows<R> || (Inserts<R> && Removes<R>);
+template <class R>
 concept TellsItsState = requires(const R& rule) {
   { rule.changes_from_nothing() } -> std::same_as<typename ChangeOf<R>::Lists>;
 };
@@ -102,7 +104,7 @@ struct CertificateOf<R> {
 /// these functions edits the elements or throws (except audit(), and when memory is exhausted).
 template <class R>
 concept KineticRule = detail::NamesElement<R> && detail::HasName<R> && detail::Certifies<R> &&
-    detail::NamesMembers<R> && detail::Repairs<R> &&(detail::Follows<R> || (detail::Inserts<R> && detail::Removes<R>));
+    detail::NamesMembers<R> && detail::Repairs<R> && detail::TakesElements<R>;
 
 /// `void change(Id id, Repair<Element>& repair)`: take up a new motion of an element. Without it: remove and insert.
 template <class R>
