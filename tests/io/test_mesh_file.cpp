@@ -98,7 +98,7 @@ TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused
   CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
 }
 
-TEST_CASE("mesh file: lines end in LF, CR or both, and go on after a backslash; a mark of UTF-8 is passed over") {
+TEST_CASE("mesh file: lines end in LF, CR or both, and go on after a backslash, and a mark of UTF-8 is passed over") {
   const TemporaryFolder folder;
   const std::string text = "\xEF\xBB\xBFv 0 0 0\nv 1 0 \\\n0\nv 0 1 0\nf 1 2\\\n3\nf 1 \\\n 3 \\\n 2\n";
   std::string carriage = text, both;

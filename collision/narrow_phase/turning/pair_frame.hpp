@@ -132,10 +132,9 @@ struct TurningBounds {
   }
 };
 
-/// The time that is so much later, rounded down, or t itself if that is not worth while: then exact signs get on
-/// faster.
-inline double after_wait(double t, double wait, double stretch) {
-  constexpr double worth = 0x1p-16;  // of the stretch
+/// The time that is so much later, rounded down, or t itself if that is not worth while, not even this part of the
+/// stretch: then exact signs get on faster.
+inline double after_wait(double t, double wait, double stretch, double worth = 0x1p-16) {
   return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;
 }
 
