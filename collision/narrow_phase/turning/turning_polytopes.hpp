@@ -35,7 +35,7 @@ namespace kds::collision {
 ///
 /// The number of ways is that of the faces and twice the product of the edges: doubles tell for some thirty operations
 /// that one is blocked. Cost: the first contact of two hulls of 8, 20, 40 corners that turn by a radian in that time
-/// 0.05, 0.26, 1 ms.
+/// 0.06, 0.24, 0.85 ms.
 template <int Degree>
 class TurningPolytopes {
  public:
@@ -262,32 +262,28 @@ double TurningPolytopes<Degree>::gaps(const Frame& frame, std::vector<double>& g
   // As edge_values() for all edges. A normal and an edge are multiplied once for all that this edge is paired with: for
   // hulls of 20 corners that is a quarter of the work.
   const double size = polytope_a_.radius + polytope_b_.radius;
-  const auto along = [size](const std::vector<Eigen::Vector3d>& normals, const std::vector<Eigen::Vector3d>& edges) {
-    std::vector<double> products;
-    products.reserve(normals.size() * edges.size());
-    for (const Eigen::Vector3d& normal : normals) {
-      for (const Eigen::Vector3d& edge : edges) products.push_back(size * dot(normal, edge));
+  const std::size_t edges_b = frame.b.edges.size();
+  std::vector<double> along_b(frame.a.normals.size() * edges_b);  // by faces of a and edges of b
+  for (std::size_t f = 0; f < frame.a.normals.size(); ++f) {
+    for (std::size_t j = 0; j < edges_b; ++j) {
+      along_b[f * edges_b + j] = size * dot(frame.a.normals[f], frame.b.edges[j]);
     }
-    return products;
-  };
-  const std::vector<double> along_b = along(frame.a.normals, frame.b.edges);
-  const std::vector<double> along_a = along(frame.b.normals, frame.a.edges);
-  const std::size_t edges_a = frame.a.edges.size(), edges_b = frame.b.edges.size();
-  for (std::size_t i = 0; i < edges_a; ++i) {
+  }
+  std::vector<double> along_a(frame.b.normals.size());  // by faces of b, of one edge of a
+  for (std::size_t i = 0; i < frame.a.edges.size(); ++i) {
     const HullEdge& edge_a = polytope_a_.structure->edges[i];
+    const Eigen::Vector3d& u = frame.a.edges[i];
+    for (std::size_t f = 0; f < along_a.size(); ++f) along_a[f] = size * dot(frame.b.normals[f], u);
     for (std::size_t j = 0; j < edges_b; ++j) {
       const HullEdge& edge_b = polytope_b_.structure->edges[j];
       const Eigen::Vector3d apart = between + frame.b.points[edge_b.ends[0]] - frame.a.points[edge_a.ends[0]];
-      const double distance = dot(cross(frame.a.edges[i], frame.b.edges[j]), apart);
+      const double distance = dot(cross(u, frame.b.edges[j]), apart);
       double least = distance, greatest = distance;  // of what is positive if the product points from a to b
-      const auto take = [&](const std::vector<double>& products, std::uint32_t face, std::size_t edges,
-                            std::size_t edge, double sign) {
-        if (!has_face(face)) return;
-        const double value = sign * products[face * edges + edge];
-        least = std::min(least, value), greatest = std::max(greatest, value);
-      };
-      take(along_b, edge_a.faces[0], edges_b, j, 1), take(along_b, edge_a.faces[1], edges_b, j, -1);
-      take(along_a, edge_b.faces[0], edges_a, i, 1), take(along_a, edge_b.faces[1], edges_a, i, -1);
+      const auto take = [&](double value) { least = std::min(least, value), greatest = std::max(greatest, value); };
+      if (has_face(edge_a.faces[0])) take(along_b[edge_a.faces[0] * edges_b + j]);
+      if (has_face(edge_a.faces[1])) take(-along_b[edge_a.faces[1] * edges_b + j]);
+      if (has_face(edge_b.faces[0])) take(along_a[edge_b.faces[0]]);
+      if (has_face(edge_b.faces[1])) take(-along_a[edge_b.faces[1]]);
       gap[way++] = -greatest;
       gap[way++] = least;
     }
