@@ -3,6 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 
+#include <algorithm>
 #include <concepts>
 #include <type_traits>
 
@@ -42,5 +43,26 @@ using PathOf = certificates::PointMotion<Motion::degree>;
 /// the path.
 template <class Motion>
 inline constexpr bool turns = !std::is_same_v<Motion, PathOf<Motion>>;
+
+/// A motion as another type, bit for bit where both have the same terms. Terms of the path and a turning that `To` does
+/// not have are left out; those that `From` does not have are zero.
+template <class To, class From>
+To motion_as(const From& from) {
+  const auto& given = path_of(from).coefficients;
+  PathOf<To> path;
+  std::copy_n(given.begin(), std::min(given.size(), path.coefficients.size()), path.coefficients.begin());
+  path.start = path_of(from).start;
+  if constexpr (turns<To>) {
+    To to;
+    to.path = path;
+    if constexpr (turns<From>) {
+      to.orientation = from.orientation;
+      to.angular_velocity = from.angular_velocity;
+    }
+    return to;
+  } else {
+    return path;
+  }
+}
 
 }  // namespace kds::collision

@@ -22,6 +22,7 @@ using kds::collision::body_slot;
 using kds::collision::BodyId;
 using kds::collision::BroadPhaseKind;
 using kds::collision::Contact;
+using kds::collision::motion_as;
 
 double cpu_seconds() {
   timespec now{};
@@ -96,7 +97,7 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   }
   void tell_motion(const World& world, BodyId id) {
     if (!world.contains(id)) return;
-    sink_.on_motion(body_slot(id), to_piece(world.motion(id)));
+    sink_.on_motion(body_slot(id), motion_as<MotionPiece>(world.motion(id)));
   }
 
   EventSink& sink_;
@@ -255,7 +256,9 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
   kds::collision::WorldCounters before;
   const auto added = [&](BodyId id, const auto& description) {
     // Of a body that precesses the first piece is none of the scene's.
-    if (!(world.motion(id) == description.motion.front())) sink.on_motion(body_slot(id), to_piece(world.motion(id)));
+    if (!(world.motion(id) == description.motion.front())) {
+      sink.on_motion(body_slot(id), motion_as<MotionPiece>(world.motion(id)));
+    }
   };
   RunResult result = run_in(world, scene, options, sink, setup_start, added, [&] {
     if (options.resume) before = world.counters();

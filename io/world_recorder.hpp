@@ -174,7 +174,7 @@ class WorldRecorder final : public kds::collision::BasicWorldListener<BodyMotion
   void see(const World& world, BodyId id) {
     const auto [place, is_new] = places_.try_emplace(id, static_cast<std::uint32_t>(scene_.bodies.size()));
     if (is_new) add(world, id);
-    record_.on_motion(place->second, to_piece(world.motion(id)));
+    record_.on_motion(place->second, kds::collision::motion_as<MotionPiece>(world.motion(id)));
   }
   void add(const World& world, BodyId id) {
     const kds::collision::PlacedShape placed = world.shape(id);

@@ -17,36 +17,15 @@ namespace kds_python {
 template <class M>
 M narrowed(const Motion& motion, const std::string& name) {
   const auto& c = motion.path.coefficients;
-  kds::collision::PathOf<M> path;
-  std::copy_n(c.begin(), path.coefficients.size(), path.coefficients.begin());
-  path.start = motion.path.start;
-  for (std::size_t k = path.coefficients.size(); k < c.size(); ++k) {
+  for (std::size_t k = M::degree + 1; k < c.size(); ++k) {
     if (c[k].isZero(0)) continue;
     const std::string term = k == 2 ? ".acceleration" : ".higher[" + std::to_string(k - 3) + "]";
     throw std::invalid_argument(name + term + ": must be 0 in a world of degree " + std::to_string(M::degree));
   }
-  if constexpr (kds::collision::turns<M>) {
-    return {path, motion.orientation, motion.angular_velocity};
-  } else {
-    if (!motion.angular_velocity.isZero(0)) {
-      throw std::invalid_argument(name + ".angular_velocity: must be 0 in a world that is not turning");
-    }
-    return path;
+  if (!kds::collision::turns<M> && !motion.angular_velocity.isZero(0)) {
+    throw std::invalid_argument(name + ".angular_velocity: must be 0 in a world that is not turning");
   }
-}
-
-/// And back, exactly.
-template <class M>
-Motion widened(const M& motion) {
-  const auto& path = path_of(motion);
-  Motion wide;
-  std::copy(path.coefficients.begin(), path.coefficients.end(), wide.path.coefficients.begin());
-  wide.path.start = path.start;
-  if constexpr (kds::collision::turns<M>) {
-    wide.orientation = motion.orientation;
-    wide.angular_velocity = motion.angular_velocity;
-  }
-  return wide;
+  return kds::collision::motion_as<M>(motion);
 }
 
 /// A motion, and those that add_body() and update_motion() in Python name `then`.

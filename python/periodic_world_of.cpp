@@ -93,12 +93,12 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
   std::size_t size() const override { return world_.size(); }
   bool contains(BodyId id) const override { return world_.contains(id); }
   Motion motion_now(BodyId id) const override {
-    Motion wide = widened(world_.motion(id).restarted(now()));
+    Motion wide = motion_as<Motion>(world_.motion(id).restarted(now()));
     wide.orientation = Eigen::Quaterniond(world_.world().shape(world_.in_world(id)).rotation);
     return wide;
   }
   Motion free_motion_now(BodyId id) const override {
-    return widened(world_.world().free_motion(world_.in_world(id)).restarted(now()));
+    return motion_as<Motion>(world_.world().free_motion(world_.in_world(id)).restarted(now()));
   }
   void audit() const override { world_.audit(); }
   kds::Snapshot save() override { return kds::save(world_); }

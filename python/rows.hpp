@@ -23,6 +23,8 @@ struct Motion {
   kds::certificates::PointMotion<degree> path{};
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+
+  friend const kds::certificates::PointMotion<degree>& path_of(const Motion& motion) { return motion.path; }
 };
 
 // Rows have no padding, so that equal ones are equal byte by byte.

@@ -275,7 +275,7 @@ class WorldOf final : public AnyWorld {
 
   /// Of a body that is to enter later the motion is that of its start.
   Motion now_of(const M& motion, BodyId id) const {
-    Motion wide = widened(path_of(motion).start < now() ? motion.restarted(now()) : motion);
+    Motion wide = motion_as<Motion>(path_of(motion).start < now() ? motion.restarted(now()) : motion);
     if constexpr (!turns<M>) wide.orientation = Eigen::Quaterniond(whole().shape(id).rotation);
     return wide;
   }

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstddef>
 #include <type_traits>
 
 namespace kds::collision::test_body_motion {
@@ -51,6 +52,26 @@ TEST_CASE("body motions have a path that is restarted with them") {
   CHECK_FALSE(turning.finite());
   CHECK(&path_of(path) == &path);
   CHECK(&path_of(turning) == &turning.path);
+}
+
+TEST_CASE("a motion as another type keeps the terms that both have") {
+  RigidMotion<2> turning{{{Vector3d(1, 2, 3), Vector3d(0.1, 0.7, -1), Vector3d(0, 0, -4.905)}, 1}};
+  turning.orientation = Eigen::Quaterniond(0.6, 0, 0.8, 0);
+  turning.angular_velocity = {0.3, 0, 1};
+  CHECK(motion_as<RigidMotion<2>>(turning) == turning);
+  CHECK(motion_as<PointMotion<2>>(turning) == turning.path);
+
+  const PointMotion<5> longer = motion_as<PointMotion<5>>(turning);
+  for (std::size_t k = 0; k <= 5; ++k) {
+    CHECK(longer.coefficients[k] == (k <= 2 ? turning.path.coefficients[k] : Vector3d(0, 0, 0)));
+  }
+  CHECK(longer.start == 1);
+  CHECK(motion_as<PointMotion<2>>(longer) == turning.path);
+  CHECK(motion_as<RigidMotion<2>>(longer) == RigidMotion<2>{turning.path});
+
+  const PointMotion<1> line = motion_as<PointMotion<1>>(longer);
+  CHECK(line.coefficients[0] == Vector3d(1, 2, 3));
+  CHECK(line.coefficients[1] == Vector3d(0.1, 0.7, -1));
 }
 
 }  // namespace
