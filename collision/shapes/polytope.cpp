@@ -23,6 +23,22 @@ std::vector<Vector3d> checked(std::vector<Vector3d> points) {
   return points;
 }
 
+/// What Polytope::box() tells.
+std::optional<AlignedBox> box_of(std::span<const Vector3d> points, const std::vector<std::uint32_t>& corners) {
+  if (corners.size() != 8) return std::nullopt;
+  AlignedBox box{points[corners[0]], points[corners[0]]};
+  for (const std::uint32_t i : corners) {
+    box.low = box.low.cwiseMin(points[i]);
+    box.high = box.high.cwiseMax(points[i]);
+  }
+  for (const std::uint32_t i : corners) {
+    for (int d = 0; d < 3; ++d) {
+      if (points[i][d] != box.low[d] && points[i][d] != box.high[d]) return std::nullopt;
+    }
+  }
+  return box;  // of which all eight corners are there, as no two points are the same corner
+}
+
 }  // namespace
 
 std::array<std::uint32_t, 3> spanning_corners(std::span<const std::uint32_t> face) {
@@ -62,6 +78,7 @@ Polytope::Polytope(std::vector<Vector3d> points)
     normals_.push_back(unit_normal(points_[a], points_[b], points_[c]));
   }
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
+  box_ = box_of(points_, structure_.corners);
 }
 
 Feature Polytope::feature_of(const Feature& of_surface) const {

@@ -1,6 +1,7 @@
 // Convex hulls of points, immutable and shared by bodies.
 #pragma once
 
+#include "collision/shapes/aligned_box.hpp"
 #include "collision/shapes/feature.hpp"
 #include "collision/shapes/hull_structure.hpp"
 #include "collision/shapes/mesh.hpp"
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -42,6 +44,9 @@ class Polytope {
   /// Whether a corner or an edge is one of a face.
   bool is_part_of(const Feature& feature, const Feature& face) const;
 
+  /// The box that it is, if its corners are exactly those of one with edges along the axes.
+  const std::optional<AlignedBox>& box() const { return box_; }
+
   /// Radius of the ball about the origin that holds all corners, rounded up.
   double bounding_radius() const { return bounding_radius_; }
 
@@ -51,6 +56,7 @@ class Polytope {
   std::vector<Eigen::Vector3d> normals_;
   std::vector<std::uint32_t> face_of_;  ///< by triangles of the surface
   std::shared_ptr<const Mesh> surface_;
+  std::optional<AlignedBox> box_;
   double bounding_radius_ = 0;
 };
 

@@ -150,21 +150,20 @@ double revolving_apart_for(const PairFrame<Degree>& frame, const Eigen::Vector3d
   return frame.certain ? certificates::positive_for(gap, rate, 0.5 * bend) : 0;
 }
 
-/// What a body that turns about an axis covers at most on one side of its centre along a direction n of unit length:
-/// points keep their heights and distances about the axis. `half`: the half edges of a box, as they are now.
-inline double revolving_support(const Eigen::Vector3d& n, const Eigen::Vector3d& spin,
-                                const std::array<Eigen::Vector3d, 3>& half) {
+/// How far points of a body come at most along a unit vector while it turns about an axis: they keep their heights and
+/// distances about it. `points`: as they are at one time, about the origin of the body.
+template <class Points>
+double revolving_reach(const Eigen::Vector3d& n, const Eigen::Vector3d& spin, const Points& points) {
   const double rate = norm(spin);
-  if (!(rate > 0)) return std::abs(dot(n, half[0])) + std::abs(dot(n, half[1])) + std::abs(dot(n, half[2]));
-  const Eigen::Vector3d axis = spin / rate;
-  const double cosine = std::abs(dot(n, axis));
+  const bool turns = rate > 0;
+  const Eigen::Vector3d axis = turns ? Eigen::Vector3d(spin / rate) : n;
+  const double cosine = dot(n, axis);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  double support = 0;
-  for (int corner = 0; corner < 4; ++corner) {  // the opposite ones are as far
-    const Eigen::Vector3d x = half[0] + (corner & 1 ? half[1] : -half[1]) + (corner & 2 ? half[2] : -half[2]);
-    support = std::max(support, std::abs(dot(axis, x)) * cosine + norm(cross(axis, x)) * sine);
+  double reach = -never;
+  for (const Eigen::Vector3d& x : points) {
+    reach = std::max(reach, turns ? dot(axis, x) * cosine + norm(cross(axis, x)) * sine : dot(n, x));
   }
-  return support;
+  return reach;
 }
 
 /// When the balls around two bodies meet, `never` if they do not until the horizon; t if they overlap.

@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <vector>
 
@@ -87,19 +88,10 @@ struct SeenCorners {
     return points[best];
   }
 
-  /// What it covers at most along a unit vector while it turns about an axis: points keep their heights and distances
-  /// about the axis.
+  /// What it covers at most along a unit vector while it turns about an axis.
   double revolving_reach(const Eigen::Vector3d& n, const Eigen::Vector3d& spin) const {
-    const double rate = norm(spin);
-    if (!(rate > 0)) return dot(n, farthest(n));
-    const Eigen::Vector3d axis = spin / rate;
-    const double cosine = dot(n, axis);
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-    double reach = -never;
-    for (const std::uint32_t i : structure->corners) {
-      reach = std::max(reach, dot(axis, points[i]) * cosine + norm(cross(axis, points[i])) * sine);
-    }
-    return reach;
+    const auto corner = [this](std::uint32_t i) -> const Eigen::Vector3d& { return points[i]; };
+    return collision::revolving_reach(n, spin, structure->corners | std::views::transform(corner));
   }
 
   const HullStructure* structure;

@@ -5,6 +5,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
 #include "collision/narrow_phase/turning/pair_frame.hpp"
+#include "collision/shapes/aligned_box.hpp"
 
 #include <Eigen/Core>
 
@@ -30,14 +31,9 @@ class TurningBoxes {
   using RigidMotion = certificates::RigidMotion<Degree>;
   static constexpr int ways = 30;
 
-  TurningBoxes(const RigidMotion& a, const Eigen::Vector3d& half_a, const RigidMotion& b, const Eigen::Vector3d& half_b)
-      : a_(a),
-        b_(b),
-        half_a_(half_a),
-        half_b_(half_b),
-        radius_a_(outer_radius(half_a)),
-        radius_b_(outer_radius(half_b)),
-        turned_alike_(turned_alike(a, b)) {}
+  /// The boxes are in the coordinates of their bodies, and may be anywhere.
+  TurningBoxes(const RigidMotion& a, const AlignedBox& of_a, const RigidMotion& b, const AlignedBox& of_b)
+      : a_(a), b_(b), box_a_(of_a), box_b_(of_b), turned_alike_(turned_alike(a, b)) {}
 
   /// Whether a way certainly separates nothing, told for next to nothing: of boxes that are turned alike at all times,
   /// as those of a lattice are, edges of one direction are parallel.
@@ -51,15 +47,15 @@ class TurningBoxes {
   /// their signs, pairs of edges by the number of the first, times four, and that of the second.
   template <class Test>
   bool every_condition(int way, Conditions which, const Test& test) const {
-    if (way < 6) return every_vertex(a_, half_a_, b_, half_b_, way, which, test);
-    if (way < 12) return every_vertex(b_, half_b_, a_, half_a_, (way - 6) ^ 1, which, test);
+    if (way < 6) return every_vertex(a_, box_a_.exact, b_, box_b_.exact, way, which, test);
+    if (way < 12) return every_vertex(b_, box_b_.exact, a_, box_a_.exact, (way - 6) ^ 1, which, test);
     const int pair = (way - 12) / 2;
     for (int k = 0; k < 4; ++k) {
       for (int l = 0; l < 4; ++l) {
         if (!(which >> (4 * k + l) & 1)) continue;
         // (u x v) . (a - b) >= 0: the product of the edges has to point from b to a.
-        const auto u = edge(half_a_, pair / 3, k, way % 2 != 0);
-        const auto v = edge(half_b_, pair % 3, l, false);
+        const auto u = edge(box_a_.exact, pair / 3, k, way % 2 != 0);
+        const auto v = edge(box_b_.exact, pair % 3, l, false);
         if (!test(certificates::EdgeEdgeSeparation<Degree>{a_, b_, u, v})) return false;
       }
     }
@@ -76,7 +72,7 @@ class TurningBoxes {
   /// The conditions of a way that do not hold for certain, and are positive, for so long from now on. (Most do: they
   /// are of the vertices and edges on the far side.)
   Conditions unsure(const PairFrame<Degree>& frame, int way, double stretch) const {
-    if (!frame.certain || !(stretch <= frame.stretch(radius_a_ + radius_b_, stretch))) return all(way);
+    if (!frame.certain || !(stretch <= frame.stretch(box_a_.radius + box_b_.radius, stretch))) return all(way);
     Conditions unsure = 0;
     every_jet(frame, way, stretch, [&](int number, const Jet& f, double third) {
       if (!(positive_for(f, third, stretch) >= stretch && f.value > 0)) unsure |= Conditions{1} << number;
@@ -87,12 +83,12 @@ class TurningBoxes {
 
   /// A bound on how fast these widths change in such a time.
   double fastest(const PairFrame<Degree>& frame, double stretch) const {
-    return frame.fastest(certificates::magnitude_sum(half_a_), certificates::magnitude_sum(half_b_), stretch);
+    return frame.fastest(box_a_.lengths(), box_b_.lengths(), stretch);
   }
 
   /// A time from t on until which the boxes are apart; t where doubles do not tell, or where it would be hardly later.
   double apart_until(double t, double horizon) const {
-    t = balls_apart_until(a_, b_, radius_a_, radius_b_, t, horizon);
+    t = balls_apart_until(a_, b_, box_a_.radius, box_b_.radius, t, horizon);
     if (t == never) return never;
     const PairFrame<Degree> frame = this->frame(t);
     std::array<double, ways> gap;
@@ -100,7 +96,7 @@ class TurningBoxes {
     const int way = widest(frame, gap);
     if (!(gap[static_cast<std::size_t>(way)] > error)) return t;
     const double all = (horizon - t) * (1 + 0x1p-40);
-    const double stretch = frame.stretch(radius_a_ + radius_b_, all);
+    const double stretch = frame.stretch(box_a_.radius + box_b_.radius, all);
     const double wait = open_for(frame, way, stretch);
     if (stretch == all || time_of_turning() == never) return after_wait(t, wait, stretch);
     return after_wait(t, std::max(wait, revolving_apart_for(frame, way)), stretch);
@@ -115,9 +111,9 @@ class TurningBoxes {
   bool separates_nothing(int way) const {
     if (way < 12) return false;
     const int pair = (way - 12) / 2;
-    const auto v = edge(half_b_, pair % 3, 0, false);
+    const auto v = edge(box_b_.exact, pair % 3, 0, false);
     for (int k = 0; k < 3; ++k) {
-      const auto u = edge(half_a_, pair / 3, k, false);
+      const auto u = edge(box_a_.exact, pair / 3, k, false);
       if (!vanishes(certificates::EdgeEdgeSeparation<Degree>{a_, b_, u, v})) return false;
     }
     return true;
@@ -125,8 +121,9 @@ class TurningBoxes {
 
   /// The same pair with its first box smaller by `margin` on each side; none where nothing of it is left.
   std::optional<TurningBoxes> smaller(double margin) const {
-    if (!(half_a_.minCoeff() > margin)) return std::nullopt;
-    return TurningBoxes(a_, half_a_ - Eigen::Vector3d::Constant(margin), b_, half_b_);
+    if (!(box_a_.half.minCoeff() > margin)) return std::nullopt;
+    const Eigen::Vector3d side = Eigen::Vector3d::Constant(margin);
+    return TurningBoxes(a_, {box_a_.exact.low + side, box_a_.exact.high - side}, b_, box_b_.exact);
   }
 
   /// The time in which the directions of the two change by about half a radian.
@@ -136,44 +133,61 @@ class TurningBoxes {
   }
 
  private:
-  static double outer_radius(const Eigen::Vector3d& half) { return norm(half) * (1 + 0x1p-50); }
+  /// A box, and what doubles make of it.
+  struct SeenBox {
+    explicit SeenBox(const AlignedBox& box)
+        : exact(box),
+          centre(0.5 * box.low + 0.5 * box.high),
+          half(0.5 * box.high - 0.5 * box.low),
+          radius(norm(box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs())) * (1 + 0x1p-50)) {}
+
+    /// Of vectors that add up to any of its corners.
+    double lengths() const { return certificates::magnitude_sum(centre) + certificates::magnitude_sum(half); }
+
+    AlignedBox exact;
+    Eigen::Vector3d centre, half;  ///< rounded
+    double radius;                 ///< no corner is farther from the origin of the body
+  };
 
   static bool turned_alike(const RigidMotion& a, const RigidMotion& b) {
     return a.orientation.coeffs() == b.orientation.coeffs() && a.angular_velocity == b.angular_velocity &&
            (a.spin().still() || a.path.start == b.path.start);
   }
 
-  static Eigen::Vector3d corner(const Eigen::Vector3d& half, int signs) {
-    return {signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]};
+  static Eigen::Vector3d corner(const AlignedBox& box, int signs) {
+    return {(signs & 1 ? box.high : box.low)[0], (signs & 2 ? box.high : box.low)[1],
+            (signs & 4 ? box.high : box.low)[2]};
   }
   /// Number 0 to 3 of the edges along an axis, forwards or backwards.
-  static std::array<Eigen::Vector3d, 2> edge(const Eigen::Vector3d& half, int axis, int number, bool backwards) {
-    Eigen::Vector3d from = half;
+  static std::array<Eigen::Vector3d, 2> edge(const AlignedBox& box, int axis, int number, bool backwards) {
+    Eigen::Vector3d from = box.high;
     const int second = (axis + 1) % 3, third = (axis + 2) % 3;
-    if (number & 1) from[second] = -from[second];
-    if (number & 2) from[third] = -from[third];
+    if (number & 1) from[second] = box.low[second];
+    if (number & 2) from[third] = box.low[third];
     Eigen::Vector3d to = from;
-    (backwards ? to : from)[axis] = -half[axis];
+    (backwards ? to : from)[axis] = box.low[axis];
     return {from, to};
   }
   /// Three corners of a face, counter-clockwise from outside: 0 is -x, 1 is +x, 2 is -y ...
-  static std::array<Eigen::Vector3d, 3> face(const Eigen::Vector3d& half, int number) {
+  static std::array<Eigen::Vector3d, 3> face(const AlignedBox& box, int number) {
     const int axis = number / 2;
     const bool upper = number % 2 != 0;
-    Eigen::Vector3d first = -half;
-    first[axis] = upper ? half[axis] : -half[axis];
+    Eigen::Vector3d first = box.low;
+    if (upper) first[axis] = box.high[axis];
     Eigen::Vector3d second = first, third = first;
-    second[(axis + (upper ? 1 : 2)) % 3] *= -1;
-    third[(axis + (upper ? 2 : 1)) % 3] *= -1;
+    const int towards_second = (axis + (upper ? 1 : 2)) % 3, towards_third = (axis + (upper ? 2 : 1)) % 3;
+    second[towards_second] = box.high[towards_second];
+    third[towards_third] = box.high[towards_third];
     return {first, second, third};
   }
   template <class Test>
-  static bool every_vertex(const RigidMotion& of_face, const Eigen::Vector3d& half_face, const RigidMotion& of_vertex,
-                           const Eigen::Vector3d& half_vertex, int number, Conditions which, const Test& test) {
-    const auto corners = face(half_face, number);
+  static bool every_vertex(const RigidMotion& of_face, const AlignedBox& box_of_face, const RigidMotion& of_vertex,
+                           const AlignedBox& box_of_vertex, int number, Conditions which, const Test& test) {
+    const auto corners = face(box_of_face, number);
     for (int signs = 0; signs < 8; ++signs) {
       if (!(which >> signs & 1)) continue;
-      if (!test(certificates::VertexFaceSeparation<Degree>{of_vertex, of_face, corner(half_vertex, signs), corners})) {
+      if (!test(
+              certificates::VertexFaceSeparation<Degree>{of_vertex, of_face, corner(box_of_vertex, signs), corners})) {
         return false;
       }
     }
@@ -188,8 +202,7 @@ class TurningBoxes {
 
   const RigidMotion& a_;
   const RigidMotion& b_;
-  Eigen::Vector3d half_a_, half_b_;
-  double radius_a_, radius_b_;
+  SeenBox box_a_, box_b_;
   bool turned_alike_;
 };
 
@@ -202,31 +215,31 @@ double TurningBoxes<Degree>::gaps(const PairFrame<Degree>& frame, std::array<dou
     u[static_cast<std::size_t>(i)] = frame.axis_a(i);
     v[static_cast<std::size_t>(i)] = frame.axis_b(i);
   }
+  const Eigen::Vector3d between = frame.way.value + frame.matrix_b * box_b_.centre - frame.matrix_a * box_a_.centre;
   const auto note = [&](std::size_t way, double distance, double size) {
     gap[way] = -distance - size;  // towards the negative side of the axis, then towards the positive one
     gap[way + 1] = distance - size;
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    double of_a = half_a_[static_cast<Eigen::Index>(i)], of_b = half_b_[static_cast<Eigen::Index>(i)];
+    double of_a = box_a_.half[static_cast<Eigen::Index>(i)], of_b = box_b_.half[static_cast<Eigen::Index>(i)];
     for (std::size_t k = 0; k < 3; ++k) {
-      of_a += half_b_[static_cast<Eigen::Index>(k)] * std::abs(dot(u[i], v[k]));
-      of_b += half_a_[static_cast<Eigen::Index>(k)] * std::abs(dot(u[k], v[i]));
+      of_a += box_b_.half[static_cast<Eigen::Index>(k)] * std::abs(dot(u[i], v[k]));
+      of_b += box_a_.half[static_cast<Eigen::Index>(k)] * std::abs(dot(u[k], v[i]));
     }
-    note(2 * i, dot(u[i], frame.way.value), of_a);
-    note(6 + 2 * i, dot(v[i], frame.way.value), of_b);
+    note(2 * i, dot(u[i], between), of_a);
+    note(6 + 2 * i, dot(v[i], between), of_b);
     for (std::size_t j = 0; j < 3; ++j) {
       const Eigen::Vector3d n = cross(u[i], v[j]);
       double size = 0;
       for (std::size_t k = 0; k < 3; ++k) {
-        if (k != i) size += half_a_[static_cast<Eigen::Index>(k)] * std::abs(dot(n, u[k]));
-        if (k != j) size += half_b_[static_cast<Eigen::Index>(k)] * std::abs(dot(n, v[k]));
+        if (k != i) size += box_a_.half[static_cast<Eigen::Index>(k)] * std::abs(dot(n, u[k]));
+        if (k != j) size += box_b_.half[static_cast<Eigen::Index>(k)] * std::abs(dot(n, v[k]));
       }
-      note(12 + 2 * (3 * i + j), dot(n, frame.way.value), size);
+      note(12 + 2 * (3 * i + j), dot(n, between), size);
     }
   }
   if (!frame.certain) return never;
-  const double lengths = certificates::magnitude_sum(half_a_) + certificates::magnitude_sum(half_b_);
-  return frame.way_error + PairFrame<Degree>::rounding * lengths;
+  return frame.way_error + PairFrame<Degree>::rounding * (box_a_.lengths() + box_b_.lengths());
 }
 
 /// The way along which the gap is widest, but for edges that are nearly parallel.
@@ -265,22 +278,22 @@ double TurningBoxes<Degree>::depth(double t) const {
   return std::max(0.0, least);
 }
 
-/// Along the direction that a way has now, and from centre to centre.
+/// Along the direction that a way has now, and between the origins.
 template <int Degree>
 double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame, int way) const {
-  std::array<Eigen::Vector3d, 3> of_a, of_b;
-  for (int k = 0; k < 3; ++k) {
-    of_a[static_cast<std::size_t>(k)] = half_a_[k] * frame.axis_a(k);
-    of_b[static_cast<std::size_t>(k)] = half_b_[k] * frame.axis_b(k);
-  }
+  const auto seen = [](const Eigen::Matrix3d& axes, const AlignedBox& box) {
+    std::array<Eigen::Vector3d, 8> corners;
+    for (int signs = 0; signs < 8; ++signs) corners[static_cast<std::size_t>(signs)] = axes * corner(box, signs);
+    return corners;
+  };
+  const auto of_a = seen(frame.matrix_a, box_a_.exact), of_b = seen(frame.matrix_b, box_b_.exact);
   const auto along = [&](const Eigen::Vector3d& n) {
-    const double covered = revolving_support(n, frame.spin_a, of_a) + revolving_support(n, frame.spin_b, of_b);
+    const double covered = revolving_reach(n, frame.spin_a, of_a) + revolving_reach(-n, frame.spin_b, of_b);
     return collision::revolving_apart_for(frame, n, covered);
   };
-  const Eigen::Vector3d u = way < 6    ? of_a[static_cast<std::size_t>(way / 2)]
-                            : way < 12 ? of_b[static_cast<std::size_t>((way - 6) / 2)]
-                                       : cross(of_a[static_cast<std::size_t>((way - 12) / 6)],
-                                               of_b[static_cast<std::size_t>((way - 12) / 2 % 3)]);
+  const Eigen::Vector3d u = way < 6    ? frame.axis_a(way / 2)
+                            : way < 12 ? frame.axis_b((way - 6) / 2)
+                                       : cross(frame.axis_a((way - 12) / 6), frame.axis_b((way - 12) / 2 % 3));
   return std::max(along(normalized(frame.way.value)), along((way % 2 != 0 ? 1 : -1) * normalized(u)));
 }
 
@@ -296,32 +309,48 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
   std::size_t count = 0;
   double of_a = 0, of_b = 0, rate = 0, offset = 0;
   VectorJet n;
+  VectorJet between = frame.way;
   const auto turned_axis = [&](bool from_a, int axis) {
     return from_a ? turning(frame.axis_a(axis), frame.spin_a) : turning(frame.axis_b(axis), frame.spin_b);
   };
   const auto add = [&](bool from_a, int axis, int sign) {
-    const double length = (from_a ? half_a_ : half_b_)[axis];
+    const double length = (from_a ? box_a_ : box_b_).half[axis];
     half[count++] = sign * length * turned_axis(from_a, axis);
     (from_a ? of_a : of_b) += length;
+  };
+  const auto add_centre = [&](bool from_a) {
+    const Eigen::Vector3d& centre = (from_a ? box_a_ : box_b_).centre;
+    if (centre.isZero(0)) return;
+    if (from_a) {
+      between = between - turning(frame.matrix_a * centre, frame.spin_a);
+    } else {
+      between = between + turning(frame.matrix_b * centre, frame.spin_b);
+    }
+    (from_a ? of_a : of_b) += norm(centre) * (1 + PairFrame<Degree>::rounding);
   };
   if (way < 12) {
     const bool of_face_a = way < 6;
     const int axis = (way % 6) / 2;
     n = turned_axis(of_face_a, axis);
     rate = of_face_a ? frame.rate_a : frame.rate_b;
-    offset = (of_face_a ? half_a_ : half_b_)[axis];
+    // What the box of the face covers along its own normal does not turn.
+    const AlignedBox& box = (of_face_a ? box_a_ : box_b_).exact;
+    const bool upper = (way % 2 != 0) == of_face_a;
+    offset = upper ? box.high[axis] : -box.low[axis];
     for (int k = 0; k < 3; ++k) add(!of_face_a, k, of_face_a ? 1 : -1);
+    add_centre(!of_face_a);
   } else {
     const int i = (way - 12) / 6, j = (way - 12) / 2 % 3;
     n = cross(turned_axis(true, i), turned_axis(false, j));
     rate = frame.rate_a + frame.rate_b;
     add(false, (j + 1) % 3, -1), add(false, (j + 2) % 3, -1);
     add(true, (i + 1) % 3, 1), add(true, (i + 2) % 3, 1);
+    add_centre(true), add_centre(false);
   }
   if (way % 2 == 0) n = -1.0 * n;
   const TurningBounds bounds(frame, rate, of_a, of_b, stretch);
-  Jet base = dot(n, frame.way);
-  base.value -= offset + bounds.rounding + PairFrame<Degree>::rounding * offset;
+  Jet base = dot(n, between);
+  base.value -= offset + bounds.rounding + PairFrame<Degree>::rounding * std::abs(offset);
   std::array<Jet, 4> width;
   for (std::size_t k = 0; k < count; ++k) {
     width[k] = dot(n, half[k]);

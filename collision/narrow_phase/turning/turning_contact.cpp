@@ -18,6 +18,7 @@
 #include "collision/vectors.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <type_traits>
 #include <variant>
 #include <vector>
@@ -33,6 +34,12 @@ using Body = typename TurningContact<Degree>::Body;
 
 double radius(const PlacedShape& shape) { return std::get<Sphere>(shape.shape).radius; }
 const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(shape.shape).half_extents; }
+/// The box that a shape is, in the coordinates of its body.
+std::optional<AlignedBox> box_of(const PlacedShape& shape) {
+  if (const auto* const box = std::get_if<Box>(&shape.shape)) return AlignedBox{-box->half_extents, box->half_extents};
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) return hull->polytope->box();
+  return std::nullopt;
+}
 bool is_ball(const PlacedShape& shape) { return std::holds_alternative<Sphere>(shape.shape); }
 bool is_capsule(const PlacedShape& shape) { return std::holds_alternative<Capsule>(shape.shape); }
 
@@ -48,6 +55,8 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
     if (const auto* const mesh = std::get_if<MeshShape>(&b.shape.shape)) return with(CornersOfMesh(*mesh));
     return with(CornersOfSolid(b.shape.shape));
   }
+  const auto box_a = box_of(a.shape), box_b = box_of(b.shape);
+  if (box_a && box_b) return ask(TurningBoxes<Degree>(a.motion, *box_a, b.motion, *box_b));
   if (std::holds_alternative<ConvexHull>(a.shape.shape) || is_capsule(a.shape)) {
     const ConvexCore core(a.shape.shape);
     if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
@@ -60,10 +69,7 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   if (is_ball(a.shape)) {
     return ask(TurningBallAndBox<Degree>(b.motion, half_extents(b.shape), a.motion, radius(a.shape)));
   }
-  if (is_ball(b.shape)) {
-    return ask(TurningBallAndBox<Degree>(a.motion, half_extents(a.shape), b.motion, radius(b.shape)));
-  }
-  return ask(TurningBoxes<Degree>(a.motion, half_extents(a.shape), b.motion, half_extents(b.shape)));
+  return ask(TurningBallAndBox<Degree>(a.motion, half_extents(a.shape), b.motion, radius(b.shape)));
 }
 
 /// The body as it is at t, in doubles. The orientation of a half-space is the same at all times.
@@ -102,6 +108,20 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
     break;
   }
   return std::max(deeper, next_up(t));
+}
+
+/// The same of bodies of which one may be a hull that is a box: it is made smaller as all hulls are, which is not how
+/// boxes are.
+template <class Pair, int Degree>
+double bodies_fall_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
+  if constexpr (std::is_same_v<Pair, TurningBoxes<Degree>>) {
+    const auto is_hull = [](const Body<Degree>& body) { return std::holds_alternative<ConvexHull>(body.shape.shape); };
+    if (is_hull(a) || is_hull(b)) {
+      const TurningPolytopes<Degree> hulls(a.motion, ConvexCore(a.shape.shape), b.motion, ConvexCore(b.shape.shape));
+      return falls_deeper<TurningPolytopes<Degree>, Degree>(hulls, a, b, t, horizon);
+    }
+  }
+  return falls_deeper<Pair, Degree>(pair, a, b, t, horizon);
 }
 
 /// Of a half-space (a). The middle of what is lowest of b, or where that does not approach but another corner of it
@@ -179,7 +199,7 @@ double first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a,
   while (t <= horizon && !approach_at<Degree>(a, b, t)) {
     // Mostly they have parted at once.
     double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
-    const double deeper = falls_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
+    const double deeper = bodies_fall_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
     if (parts == never) parts = ways.first_parting(t, std::min(deeper, horizon));
     t = parts < deeper ? ways.first_penetration(parts, horizon) : deeper;
   }

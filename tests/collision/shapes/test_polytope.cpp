@@ -137,6 +137,38 @@ TEST_CASE("what has no hull is refused by name", "[polytope]") {
   CHECK_THROWS_WITH(place(ConvexHull{}, Eigen::Quaterniond::Identity()), "hull: is missing");
 }
 
+TEST_CASE("a hull is a box if its corners are exactly those of one", "[polytope]") {
+  const Vector3d low(-0.1, 0.7, 0), high(0.3, 0.7 + 1e-9, 5);
+  std::vector<Vector3d> corners;
+  for (int k = 0; k < 8; ++k) {
+    corners.emplace_back((k & 1 ? high : low)[0], (k & 2 ? high : low)[1], (k & 4 ? high : low)[2]);
+  }
+  const auto box_of = [](const std::vector<Vector3d>& points) { return Polytope(points).box(); };
+  const auto is_it = [&](const auto& box) { return box && box->low == low && box->high == high; };
+  CHECK(is_it(box_of(corners)));
+  std::reverse(corners.begin(), corners.end());
+  CHECK(is_it(box_of(corners)));
+  std::vector<Vector3d> more = corners;  // those that are no corners do not matter
+  more.push_back(0.5 * low + 0.5 * high);
+  more.emplace_back(low[0], low[1], 2);
+  CHECK(is_it(box_of(more)));
+
+  for (std::size_t i = 0; i < 8; ++i) {
+    for (int d = 0; d < 3; ++d) {
+      INFO("corner " << i << ", coordinate " << d);
+      std::vector<Vector3d> skewed = corners;
+      double& x = skewed[i][d];
+      x = std::nextafter(x, skewed[i][d] == low[d] ? 10 : -10);
+      CHECK_FALSE(box_of(skewed));
+    }
+  }
+  corners.pop_back();
+  CHECK_FALSE(box_of(corners));
+  corners.emplace_back(low[0], low[1], 6);
+  CHECK_FALSE(box_of(corners));
+  CHECK_FALSE(box_of({{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}));
+}
+
 TEST_CASE("a hull has the mass properties of its solid", "[polytope][mass]") {
   const Vector3d half(1, 2, 3);
   std::vector<Vector3d> corners;

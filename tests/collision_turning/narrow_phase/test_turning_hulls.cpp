@@ -1,5 +1,9 @@
 // Convex hulls that turn: when they meet balls, boxes and each other, against distances by brute force in long doubles.
+#include "collision/narrow_phase/convex_core.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/turning_boxes.hpp"
+#include "collision/narrow_phase/turning/turning_polytopes.hpp"
+#include "collision/narrow_phase/turning/ways_apart.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "tests/collision_turning/narrow_phase/check_meetings.hpp"
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
@@ -10,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace test_turning_hulls {
@@ -23,6 +28,7 @@ using kds::tests::first_meeting;
 using kds::tests::motion_of;
 using kds::tests::Random;
 using kds::tests::random_hull;
+using kds::tests::random_vector;
 
 template <int Degree>
 using Solid = kds::tests::TurningSolid<Degree>;
@@ -97,6 +103,43 @@ TEST_CASE("a turning hull of the corners of a box meets as the box does, to the 
     }
   }
   CHECK(meetings > 30);
+}
+
+TEST_CASE("hulls that are boxes, wherever in their bodies, meet as hulls do, to the bit",
+          "[narrow-phase][turning][hull]") {
+  Random random(11);
+  int meetings = 0;
+  const auto somewhere = [&random] {
+    const double far = random.one_in(4) ? 3 : 0.5;
+    const Vector3d centre = random_vector(random, far);
+    const Vector3d half(random.between(0.1, 1), random.between(0.1, 1), random.one_in(3) ? 0.02 : 0.5);
+    std::vector<Vector3d> points{centre};  // the first is inside
+    for (int k = 0; k < 8; ++k) {
+      const Vector3d signs(k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1);
+      points.emplace_back(centre + half.cwiseProduct(signs));
+    }
+    return convex_hull(std::move(points));
+  };
+  for (int i = 0; i < 150; ++i) {
+    const double rate = std::pow(10.0, random.between(-3, 1.5));
+    const ConvexHull of_a = somewhere(), of_b = somewhere();
+    const auto [a, b] = kds::tests::random_solids<2>(random, rate, Shape(of_a), Shape(of_b));
+    INFO("pair " << i << ", rate " << rate);
+    REQUIRE((of_a.polytope->box() && of_b.polytope->box()));
+    const TurningBoxes<2> boxes(a.motion, *of_a.polytope->box(), b.motion, *of_b.polytope->box());
+    const TurningPolytopes<2> hulls(a.motion, ConvexCore(a.shape), b.motion, ConvexCore(b.shape));
+    const WaysApart<TurningBoxes<2>> as_boxes(boxes);
+    const WaysApart<TurningPolytopes<2>> as_hulls(hulls);
+    const double found = as_boxes.first_penetration(0, 2);
+    CHECK(found == as_hulls.first_penetration(0, 2));
+    CHECK(boxes.apart_until(0, 2) <= found);
+    CHECK(first_meeting(a, b, 0, 2) == found);
+    if (found == never) continue;
+    ++meetings;
+    CHECK(as_boxes.first_parting(found, 2) == as_hulls.first_parting(found, 2));
+    CHECK(as_boxes.penetrate(found + 0.01) == as_hulls.penetrate(found + 0.01));
+  }
+  CHECK(meetings > 40);
 }
 
 TEST_CASE("turning hulls: grazing, by gaps of any size", "[narrow-phase][turning][hull]") {
