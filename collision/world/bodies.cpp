@@ -248,7 +248,11 @@ void Bodies<Motion>::number_from(BodySlot first) {
 template <class Motion>
 void Bodies<Motion>::lend() {
   lent_ = bodies_.size();
-  movers_ = {}, motions_ = {}, bodies_ = {}, waiting_ = {};
+  // Their memory is given back, as it would not be if `{}` were assigned.
+  LargeVector<Mover>().swap(movers_);
+  LargeVector<Motion>().swap(motions_);
+  LargeVector<Body>().swap(bodies_);
+  std::vector<BodySlot>().swap(waiting_);
 }
 
 template <class Motion>
