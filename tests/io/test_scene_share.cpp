@@ -68,7 +68,7 @@ TEST_CASE("share of a scene: all together are its bodies, in their order, and ea
     for (std::size_t rank = 0; rank < processes; ++rank) {
       INFO("process " << rank << " of " << processes);
       const Scene share = read_share(file, 2.5, rank, processes);
-      CHECK(share.is_share() == processes > 1);
+      CHECK(share.is_share() == (processes > 1));
       CHECK(share.size() == 15);
       CHECK(share.end_time == 2.5);
       CHECK((!share.is_share() || share.share.first == next));
