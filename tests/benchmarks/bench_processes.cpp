@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -123,6 +124,15 @@ bool by_processes(std::size_t bodies, std::size_t domains) {
   return domains <= 8 || (domains == 64 && bodies <= 30'000);
 }
 
+/// What has been counted since.
+ParallelCounters difference(const ParallelCounters& counters, const ParallelCounters& before) {
+  using Numbers = std::array<std::uint64_t, sizeof(ParallelCounters) / sizeof(std::uint64_t)>;
+  Numbers numbers = std::bit_cast<Numbers>(counters);
+  const Numbers of_before = std::bit_cast<Numbers>(before);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] -= of_before[i];
+  return std::bit_cast<ParallelCounters>(numbers);
+}
+
 /// Runs a gas in domains.
 Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
   Counts counts;
@@ -131,11 +141,14 @@ Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
     ParallelListener listener;
     ParallelWorld<1> world(gas.options, {.threads = 1, .domains = domains}, &listener, processes);
     for (const auto& ball : gas.bodies) world.add_body(ball);
+    world.advance_to(0);  // All bodies have been sent to where they are known.
+    const ParallelCounters before = world.counters();
+    const MessageCounters sent = world.messages();
     world.advance_to(end);
     const std::scoped_lock lock(mutex);
-    counts.of = world.counters();
-    counts.messages += static_cast<double>(world.messages().letters);
-    counts.bytes += static_cast<double>(world.messages().bytes);
+    counts.of = difference(world.counters(), before);
+    counts.messages += static_cast<double>(world.messages().letters - sent.letters);
+    counts.bytes += static_cast<double>(world.messages().bytes - sent.bytes);
   };
   if (by_processes(gas.bodies.size(), domains)) {
     kds::collision::tests::ThreadProcesses(domains).run([&](Processes& processes) { run(&processes); });
