@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -136,6 +137,32 @@ TEST_CASE("Shares: a process stores what its domains know, and less the more pro
   CHECK(most[2] < 0.7 * static_cast<double>(all));
   CHECK(most[4] < 0.5 * static_cast<double>(all));
   CHECK(most[8] < 0.35 * static_cast<double>(all));
+}
+
+TEST_CASE("Shares: bodies that have left for good are not stored any more", "[parallel]") {
+  const auto gas = tests::lattice(8, 3);
+  ThreadProcesses(6).run([&](Processes& processes) {
+    // One domain each: what a process stores is what its domain knows in the next step.
+    ParallelWorld<1> divided(gas.options, {.threads = 1, .domains = 6, .halo = 0.5, .longest_window = 0.25}, nullptr,
+                             &processes);
+    add_share(divided, gas.scene.bodies, even_ends(gas.scene.bodies.size(), 6), processes.rank());
+    Team team(&processes);
+    int compared = 0;
+    for (int k = 1; k <= 40; ++k) {
+      divided.advance_to(k);
+      if (divided.domains() == 1) continue;  // It is one world for a stretch.
+      std::array<std::uint64_t, 1> stored{divided.stored()};
+      team.combine(stored, {});
+      const ParallelCounters before = divided.counters();
+      divided.advance_to(k + 0x1p-20);
+      const ParallelCounters after = divided.counters();
+      if (after.steps != before.steps + 1) throw std::runtime_error("it is not one step");
+      if (after.bodies_known - before.bodies_known != stored[0]) throw std::runtime_error("others are stored");
+      ++compared;
+    }
+    if (compared < 30) throw std::runtime_error("it is one world too often");
+    if (divided.counters().copies_made < 1000) throw std::runtime_error("bodies do not wander");
+  });
 }
 
 namespace {
