@@ -273,7 +273,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
 }
 
 /// What is told of the run of a process.
-struct Share {
+struct OwnRun {
   kds::collision::WorldCounters work{};
   kds::collision::MessageCounters messages{};
   double setup_cpu_seconds = 0, run_cpu_seconds = 0;
@@ -287,11 +287,11 @@ struct Share {
 static_assert(std::is_trivially_copyable_v<kds::collision::WorldCounters>);
 
 /// In process 0 the work of the worlds of all, and what the busiest took; in others their own.
-void share(kds::collision::Team& team, Share mine, RunResult& result) {
+void share(kds::collision::Team& team, OwnRun mine, RunResult& result) {
   kds::collision::Letters letters;
   if (team.rank() != 0) letters.to(0)(mine);
   team.exchange(std::move(letters), [&](std::size_t, auto& reader) {
-    Share other;
+    OwnRun other;
     reader(other);
     mine.work = mine.work + other.work;
     mine.messages.letters += other.messages.letters, mine.messages.bytes += other.messages.bytes;

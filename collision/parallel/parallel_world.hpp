@@ -78,7 +78,8 @@ class BasicParallelWorld final {
   void add_shares(std::size_t count, const std::function<Description(std::size_t)>& body);
 
   /// The scene as one world, at now(): for all changes, queries, audits and snapshots. It must not be advanced, and is
-  /// valid until the next advance_to(). Costs, after an advance_to(), what adding all bodies costs.
+  /// valid until the next advance_to(). Costs, after an advance_to(), what adding all bodies costs; each of several
+  /// processes has all of them in memory then.
   World& whole();
 
   /// Processes everything up to and including t. Throws as World::advance_to(), and std::logic_error if called from
