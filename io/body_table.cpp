@@ -2,10 +2,13 @@
 
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <map>
+#include <optional>
 #include <string_view>
 #include <system_error>
 #include <type_traits>
@@ -93,8 +96,15 @@ std::vector<std::string> names_in(hid_t file) {
   return names;
 }
 
+/// Rows of a table: all, or so many from the first on.
+struct RowRange {
+  std::size_t first = 0;
+  std::optional<std::size_t> count{};
+};
+
+/// Reads rows of a column. Returns how many rows it has.
 template <class Entry>
-void read_column(hid_t file, const std::string& name, std::vector<Entry>& column) {
+std::size_t read_column(hid_t file, const std::string& name, const RowRange& rows, std::vector<Entry>& column) {
   using Number = typename Layout<Entry>::Number;
   constexpr hsize_t width = Layout<Entry>::width;
   const auto require = [&](bool holds, const std::string& what) {
@@ -117,8 +127,15 @@ void read_column(hid_t file, const std::string& name, std::vector<Entry>& column
   const double bytes = static_cast<double>(extent[0]) * static_cast<double>(width * H5Tget_size(type));
   require(bytes <= most_compressed * (few_bytes + static_cast<double>(H5Dget_storage_size(set))),
           "has fewer bytes than its rows need");
-  column.resize(extent[0]);
-  require(H5Dread(set, native_type<Number>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, column.data()) >= 0, "cannot be read");
+  if (rows.first > extent[0]) return extent[0];
+  const std::array<hsize_t, 2> first{rows.first, 0}, count{rows.count.value_or(extent[0]), width};
+  if (count[0] > extent[0] - first[0]) return extent[0];
+  column.resize(count[0]);
+  const Handle memory(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, "out of memory");
+  const bool selected = H5Sselect_hyperslab(space, H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr) >= 0;
+  require(selected && H5Dread(set, native_type<Number>(), memory, space, H5P_DEFAULT, column.data()) >= 0,
+          "cannot be read");
+  return extent[0];
 }
 
 void write_column(hid_t file, const char* name, hsize_t rows, hsize_t width, hid_t type, const void* data) {
@@ -132,42 +149,73 @@ void write_column(hid_t file, const char* name, hsize_t rows, hsize_t width, hid
 }
 
 /// Every column that is used has as many rows as `position`.
-template <class Error>
-void require_equal_rows(const BodyTable& table) {
-  for_each_column(table, [&](const char* name, const auto& values) {
-    if (values.empty() || values.size() == table.rows()) return;
-    throw Error(std::string(name) + ": has " + std::to_string(values.size()) + " rows, and position has " +
-                std::to_string(table.rows()));
-  });
+std::string unequal_rows(const char* name, std::size_t rows, std::size_t of_position) {
+  return std::string(name) + ": has " + std::to_string(rows) + " rows, and position has " + std::to_string(of_position);
 }
 
 }  // namespace
 
-BodyTable read_body_table(const std::filesystem::path& path) {
+namespace {
+
+/// Calls read(file), which is open then.
+template <class Read>
+void with_file(const std::filesystem::path& path, const Read& read) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) throw BodyTableError("cannot be read: Is a directory");
   if (!std::ifstream(path, std::ios::binary)) {
     throw BodyTableError(std::string("cannot be read: ") + std::strerror(errno));
   }
   const Silence silence;
-  const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "is no HDF5 file, or is damaged");
+  read(Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "is no HDF5 file, or is damaged"));
+}
+
+BodyTable read_rows(const std::filesystem::path& path, const RowRange& range) {
   BodyTable table;
-  for (const std::string& name : names_in(file)) {
-    bool known = false;
-    for_each_column(table, [&](const char* column, auto& values) {
-      if (name != column) return;
-      known = true;
-      read_column(file, name, values);
-    });
-    if (!known) throw BodyTableError(name + ": is no column of a table of bodies");
-  }
-  if (table.position.empty()) throw BodyTableError("position: is missing, or has no rows");
-  require_equal_rows<BodyTableError>(table);
+  std::map<std::string, std::size_t> rows;  // of each column that there is
+  with_file(path, [&](hid_t file) {
+    for (const std::string& name : names_in(file)) {
+      bool known = false;
+      for_each_column(table, [&](const char* column, auto& values) {
+        if (name != column) return;
+        known = true;
+        rows[name] = read_column(file, name, range, values);
+      });
+      if (!known) throw BodyTableError(name + ": is no column of a table of bodies");
+    }
+  });
+  if (rows["position"] == 0) throw BodyTableError("position: is missing, or has no rows");
+  for_each_column(table, [&](const char* name, const auto&) {
+    const auto found = rows.find(name);
+    if (found == rows.end() || found->second == 0 || found->second == rows["position"]) return;
+    throw BodyTableError(unequal_rows(name, found->second, rows["position"]));
+  });
   return table;
 }
 
+}  // namespace
+
+BodyTable read_body_table(const std::filesystem::path& path) { return read_rows(path, {}); }
+
+BodyTable read_body_table(const std::filesystem::path& path, std::size_t first, std::size_t rows) {
+  return read_rows(path, {first, rows});
+}
+
+std::size_t body_table_rows(const std::filesystem::path& path) {
+  std::size_t rows = 0;
+  with_file(path, [&](hid_t file) {
+    std::vector<Eigen::Vector3d> none;
+    const std::vector<std::string> names = names_in(file);
+    if (std::ranges::find(names, "position") != names.end()) rows = read_column(file, "position", {0, 0}, none);
+  });
+  if (rows == 0) throw BodyTableError("position: is missing, or has no rows");
+  return rows;
+}
+
 std::string to_hdf5(const BodyTable& table) {
-  require_equal_rows<std::invalid_argument>(table);
+  for_each_column(table, [&](const char* name, const auto& values) {
+    if (values.empty() || values.size() == table.rows()) return;
+    throw std::invalid_argument(unequal_rows(name, values.size(), table.rows()));
+  });
   const Silence silence;
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, "out of memory");
   constexpr std::size_t growth = std::size_t{64} << 20;

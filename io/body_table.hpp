@@ -70,6 +70,11 @@ struct BodyTableError : std::runtime_error {
 /// Files of others are only as safe to read as the HDF5 library makes them: it trusts their structure in places.
 BodyTable read_body_table(const std::filesystem::path& file);
 
+/// How many rows it has: those of the column position, whatever the others say. Throws BodyTableError.
+std::size_t body_table_rows(const std::filesystem::path& file);
+/// The same of so many rows from one on, of which only these are read. Precondition: it has them.
+BodyTable read_body_table(const std::filesystem::path& file, std::size_t first, std::size_t rows);
+
 /// The HDF5 file of a table, as bytes to be written: equal tables give equal bytes. Throws std::invalid_argument where
 /// a column that is used has another number of rows than `position`.
 std::string to_hdf5(const BodyTable& table);

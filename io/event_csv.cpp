@@ -33,9 +33,9 @@ void append_csv_line(std::string& text, const Event& event, const Scene& scene) 
   text += ',';
   text += event_kind_names[static_cast<std::size_t>(event.kind)];
   text += ',';
-  append_name(text, scene.bodies[event.a].name);
+  append_name(text, scene.name_of(event.a));
   text += ',';
-  append_name(text, event.is_at_wall() ? wall_names[event.b] : std::string_view(scene.bodies[event.b].name));
+  append_name(text, event.is_at_wall() ? std::string(wall_names[event.b]) : scene.name_of(event.b));
   if (event.is_about_volumes()) {
     text += ",,,,,,,-,-\n";
     return;

@@ -203,13 +203,20 @@ RunResult run_in(World& world, const Scene& scene, const RunOptions& options, Ev
                  const Added& added, const Begun& begun) {
   if (options.resume) {
     kds::restore(*options.resume, world);
-    if (world.size() != scene.bodies.size()) {
+    if (world.size() != scene.size()) {
       throw std::invalid_argument("the state to go on from is of " + std::to_string(world.size()) +
-                                  " bodies, and the scene has " + std::to_string(scene.bodies.size()));
+                                  " bodies, and the scene has " + std::to_string(scene.size()));
     }
     if (!(world.now() <= scene.end_time)) throw std::invalid_argument("the state to go on from is after the end");
   } else {
+    if constexpr (requires { world.add_shares(0, {}); }) {
+      if (scene.is_share()) {
+        const auto body = [&](std::size_t i) { return describe<typename World::Motion>(scene.bodies[i]); };
+        world.add_shares(scene.bodies.size(), body);
+      }
+    }
     for (const SceneBody& body : scene.bodies) {
+      if (scene.is_share()) break;
       const auto description = describe<typename World::Motion>(body);
       added(world.add_body(description), description);
     }
@@ -226,7 +233,7 @@ RunResult run_in(World& world, const Scene& scene, const RunOptions& options, Ev
   result.setup_cpu_seconds = run_start - setup_start;
   result.run_cpu_seconds = run_end - run_start;
   result.sim_seconds = scene.end_time - begin;
-  result.bodies = scene.bodies.size();
+  result.bodies = scene.size();
   result.peak_memory_bytes = peak_memory();
   return result;
 }
@@ -269,7 +276,7 @@ RunResult run_with(const Scene& scene, const RunOptions& options, EventSink& sin
 }
 
 /// What is told of the run of a process.
-struct Share {
+struct OwnRun {
   kds::collision::WorldCounters work{};
   kds::collision::MessageCounters messages{};
   double setup_cpu_seconds = 0, run_cpu_seconds = 0;
@@ -283,11 +290,11 @@ struct Share {
 static_assert(std::is_trivially_copyable_v<kds::collision::WorldCounters>);
 
 /// In process 0 the work of the worlds of all, and what the busiest took; in others their own.
-void share(kds::collision::Team& team, Share mine, RunResult& result) {
+void share(kds::collision::Team& team, OwnRun mine, RunResult& result) {
   kds::collision::Letters letters;
   if (team.rank() != 0) letters.to(0)(mine);
   team.exchange(std::move(letters), [&](std::size_t, auto& reader) {
-    Share other;
+    OwnRun other;
     reader(other);
     mine.work = mine.work + other.work;
     mine.messages.letters += other.messages.letters, mine.messages.bytes += other.messages.bytes;
@@ -336,6 +343,7 @@ RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
   const bool divided = options.domains != 1 || options.processes;
+  if (scene.is_share() && !options.processes) throw std::invalid_argument("run: it is a share of a scene");
   if (divided && (options.pairs || options.profile)) {
     throw std::invalid_argument(
         "RunOptions.domains: volumes are not told of, nor work profiled, in a scene that is divided");

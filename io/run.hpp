@@ -29,7 +29,8 @@ struct RunOptions {
   /// Into how many domains the scene is divided, which the threads run; 0: as many as is best for them. With more than
   /// one the sink is not told of motions, so there are no pictures. The events do not depend on it.
   std::size_t domains = 1;
-  /// If not null, these run the scene together, divided into domains: all call run() with the same scene and options.
+  /// If not null, these run the scene together, divided into domains: all call run() with the same scene, or each with
+  /// its share of it, and with the same options.
   /// The sink of process 0 is told of events. Must outlive the run.
   kds::collision::Processes* processes = nullptr;
   /// If not null, this is told in each process of what its own domains record, and the sink of process 0 only of events

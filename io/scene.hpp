@@ -9,10 +9,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::io {
@@ -66,6 +68,18 @@ struct Domain {
   double restitution = 1;  ///< of the walls
 };
 
+/// Which of the bodies of a scene are those of one of several processes (read_scene()), and what is known of the
+/// others.
+struct Share {
+  std::size_t first = 0;  ///< the number of the first of Scene::bodies
+  std::size_t all = 0;    ///< bodies of the scene; 0 if there are no others
+  /// The names of the bodies that are in no table, which come first; and of each table the prefix of the names of its
+  /// bodies, which end with their rows, and how many there are.
+  std::vector<std::string> names{};
+  std::vector<std::pair<std::string, std::size_t>> tables{};
+  int degree = 1;  ///< of the others
+};
+
 /// What a scene file says, checked.
 struct Scene {
   /// The earliest start of a first piece. A body whose first piece starts later enters then.
@@ -75,13 +89,19 @@ struct Scene {
   bool turning = false;  ///< its bodies turn, or contacts may make them: the scene speaks of it
   std::optional<Domain> domain;
   std::vector<SceneMesh> meshes;
-  std::vector<SceneBody> bodies;
+  std::vector<SceneBody> bodies;  ///< all, or those of a share
+  Share share{};
   std::vector<std::string> table_files;  ///< of tables of bodies, as written in the scene
   /// What was mended in what the scene names, each as one line `FILE: WHERE: what`.
   std::vector<std::string> warnings;
 
   /// 2 where any piece accelerates, else 1.
   int degree() const;
+  bool is_share() const { return share.all > 0; }
+  /// How many bodies the whole scene has.
+  std::size_t size() const { return is_share() ? share.all : bodies.size(); }
+  /// The name of a body of the whole scene, by its number: its place among all.
+  std::string name_of(std::size_t number) const;
 };
 
 /// What is wrong with a scene, as one line `FILE: WHERE: what is wrong`.

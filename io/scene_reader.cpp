@@ -12,6 +12,7 @@
 #include "io/scene_file/table_reader.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
@@ -161,7 +162,41 @@ Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
   return domain;
 }
 
-Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until) {
+/// Which process reads.
+struct Reader {
+  std::size_t rank = 0, processes = 1;
+};
+
+/// Makes a scene, whose bodies are all that are in no table, the share of a process. Returns, for each table, which of
+/// its rows are in the share.
+std::vector<TableRows> begin_share(const std::vector<JsonNode>& tables, const std::filesystem::path& folder,
+                                   const Reader& reader, Scene& scene) {
+  Share& share = scene.share;
+  for (const SceneBody& body : scene.bodies) share.names.push_back(body.name);
+  share.all = share.names.size();
+  for (const JsonNode& table : tables) {
+    share.tables.emplace_back(table["prefix"].string(), rows_of_table(table, folder));
+    share.all += share.tables.back().second;
+  }
+  share.first = share.all * reader.rank / reader.processes;
+  const std::size_t end = share.all * (reader.rank + 1) / reader.processes;
+  const auto place = [&](std::size_t number) {
+    return scene.bodies.begin() + static_cast<std::ptrdiff_t>(std::min(number, share.names.size()));
+  };
+  scene.bodies.erase(place(end), scene.bodies.end());
+  scene.bodies.erase(scene.bodies.begin(), place(share.first));
+  std::vector<TableRows> rows;
+  std::size_t first = share.names.size();
+  for (const auto& [prefix, count] : share.tables) {
+    const std::size_t begin = std::clamp(share.first, first, first + count) - first;
+    rows.push_back({begin, std::clamp(end, first, first + count) - first - begin});
+    first += count;
+  }
+  return rows;
+}
+
+Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until,
+                    const Reader& reader) {
   root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "rolling_friction",
                "domain", "meshes", "bodies", "tables"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
@@ -183,12 +218,14 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     if (!is_new) node["name"].fail('"' + entry->first + "\" is the name of " + entry->second + " too");
     scene.turning = scene.turning || speaks_of_turning(node);
   }
+  const std::vector<JsonNode> named = root.has("tables") ? root["tables"].elements() : std::vector<JsonNode>{};
+  const std::vector<TableRows> rows =
+      reader.processes > 1 ? begin_share(named, folder, reader, scene) : std::vector<TableRows>(named.size());
+  const std::size_t first_listed = std::min(scene.share.first, bodies.size()), listed_here = scene.bodies.size();
   std::vector<ReadTable> tables;
-  if (root.has("tables")) {
-    for (const JsonNode& node : root["tables"].elements()) {
-      tables.push_back(read_table(node, folder, surface, scene));
-      scene.table_files.push_back(tables.back().file);
-    }
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    tables.push_back(read_table(named[i], folder, surface, rows[i], scene));
+    scene.table_files.push_back(tables.back().file);
   }
   check_names(tables, names);
   for (const SceneBody& body : scene.bodies) {  // made by pivots
@@ -198,15 +235,14 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
     scene.meshes.push_back({body.name, "", mesh});
   }
   const auto each_body = [&](const auto& check) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      check(scene.bodies[i], [&](const std::string& member) {
-        return member.empty() ? bodies[i].path() : bodies[i].path() + '.' + member;
-      });
+    for (std::size_t i = 0; i < listed_here; ++i) {
+      const std::string path = bodies[first_listed + i].path();
+      check(scene.bodies[i], [&](const std::string& member) { return member.empty() ? path : path + '.' + member; });
     }
     for (const ReadTable& table : tables) {
-      for (std::size_t row = 0; row < table.rows; ++row) {
-        check(scene.bodies[table.first + row],
-              [&](const std::string& member) { return table.member_path(row, member); });
+      for (std::size_t i = 0; i < table.rows_read; ++i) {
+        check(scene.bodies[table.first + i],
+              [&](const std::string& member) { return table.member_path(table.first_row + i, member); });
       }
     }
   };
@@ -222,7 +258,7 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
 
   if (!scene.bodies.empty()) scene.begin_time = scene.bodies.front().motion.front().start();
   for (const SceneBody& body : scene.bodies) scene.begin_time = std::min(scene.begin_time, body.motion.front().start());
-  if (scene.end_time < scene.begin_time) {
+  if (!scene.is_share() && scene.end_time < scene.begin_time) {
     root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }
   scene.end_time = until.value_or(scene.end_time);
@@ -230,12 +266,11 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   return scene;
 }
 
-}  // namespace
-
-Scene parse_scene(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until) {
+Scene parse(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until,
+            const Reader& reader) {
   try {
     const json document = parse_json(json_text);
-    Scene scene = read_document(JsonNode(document, ""), file.parent_path(), until);
+    Scene scene = read_document(JsonNode(document, ""), file.parent_path(), until, reader);
     for (std::string& warning : scene.warnings) warning.insert(0, file.string() + ": ");
     return scene;
   } catch (const JsonError& error) {
@@ -243,7 +278,7 @@ Scene parse_scene(std::string_view json_text, const std::filesystem::path& file,
   }
 }
 
-Scene read_scene(const std::filesystem::path& file, std::optional<double> until) {
+std::string text_of(const std::filesystem::path& file) {
   const auto fail = [&](const std::string& why) { throw SceneError(file.string(), "file", "cannot be read: " + why); };
   std::error_code ignored;
   if (std::filesystem::is_directory(file, ignored)) fail("Is a directory");
@@ -252,7 +287,34 @@ Scene read_scene(const std::filesystem::path& file, std::optional<double> until)
   std::ostringstream content;
   if (in.peek() != std::ifstream::traits_type::eof()) content << in.rdbuf();
   if (in.bad() || !content) fail("read error");
-  return parse_scene(content.view(), file, until);
+  return std::move(content).str();
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view json_text, const std::filesystem::path& file, std::optional<double> until) {
+  return parse(json_text, file, until, {});
+}
+
+Scene read_scene(const std::filesystem::path& file, std::optional<double> until) {
+  return parse(text_of(file), file, until, {});
+}
+
+Scene read_share(const std::filesystem::path& file, std::optional<double> until, std::size_t rank,
+                 std::size_t processes) {
+  return parse(text_of(file), file, until, {rank, processes});
+}
+
+void complete(Scene& share, const std::filesystem::path& file, kds::collision::Team& team) {
+  if (!share.is_share()) return;
+  std::array<double, 2> greatest{share.bodies.empty() ? -kds::never : -share.begin_time,
+                                 static_cast<double>(share.degree())};
+  team.combine({}, greatest);
+  share.begin_time = -greatest[0] + 0.0;
+  share.share.degree = static_cast<int>(greatest[1]);
+  if (share.end_time >= share.begin_time) return;
+  throw SceneError(file.string(), "end_time",
+                   "must be >= " + number_text(share.begin_time) + ", where the motion begins");
 }
 
 }  // namespace kds::io

@@ -4,14 +4,18 @@
 #include "collision/parallel/domain_sets.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/partition.hpp"
+#include "collision/parallel/processes.hpp"
+#include "collision/parallel/slots_by_number.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/scripts.hpp"
 
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <utility>
@@ -52,7 +56,7 @@ class BodyMoves {
   std::vector<DomainIndex> known_;  ///< of all, one after another
 };
 
-/// What the domains of a scene share. Bodies by their numbers.
+/// What the domains of a scene share. Who owns and knows a body is known of those that this process stores.
 struct Division {
   static constexpr DomainIndex nobody = no_domain;
 
@@ -63,19 +67,24 @@ struct Division {
   double greatest_bend = 0;       ///< of these: half an acceleration, along an axis
   double largest_guided = never;  ///< how far bodies reach that have owners though no other body moves them
   double bulge = 0;               ///< how far a path may leave the chord between two of its places within a window
+  const SlotsByNumber* slots = nullptr;  ///< of the bodies that are stored; null where they are numbers
+  DomainSets sets{partition.size()};
+  std::vector<DomainIndex> owner{};         ///< by slot
+  std::vector<DomainSets::Number> known{};  ///< by slot, to whom: a set of `sets`
+
+  BodySlot slot(BodySlot number) const { return slots ? slots->find(number) : number; }
   /// The domain in whose cell a body is; `nobody` of fixed bodies that stand, and of large ones that move: no other
   /// body changes how they do, so all that know them know them right.
-  std::vector<DomainIndex> owner{};
-  std::vector<DomainSets::Number> known{};  ///< to whom: a set of `sets`
-  DomainSets sets{partition.size()};
-
-  /// Those to whom a body is known, ascending.
-  std::span<const DomainIndex> knowers(BodySlot number) const { return sets[known[number]]; }
-  /// Whether a body has no owner, and may move.
-  bool is_everywhere(BodySlot number) const {
-    return owner[number] == nobody && knowers(number).size() == partition.size();
+  DomainIndex owner_of(BodySlot number) const { return owner[slot(number)]; }
+  /// To whom it is known, as a set of `sets`; and these, ascending.
+  DomainSets::Number known_to(BodySlot number) const { return known[slot(number)]; }
+  std::span<const DomainIndex> knowers(BodySlot number) const { return sets[known_to(number)]; }
+  bool is_known_to_one(BodySlot number) const { return known_to(number) < partition.size(); }
+  void note(BodySlot number, DomainIndex its_owner, std::span<const DomainIndex> its_knowers) {
+    const BodySlot at = slot(number);
+    if (owner.size() <= at) owner.resize(at + std::size_t{1}, nobody), known.resize(owner.size());
+    owner[at] = its_owner, known[at] = sets.number_of(its_knowers);
   }
-  bool is_known_to_one(BodySlot number) const { return known[number] < partition.size(); }
   /// Finds the domains that know what is at a place and reaches so far: those in whose halo it is.
   void find_knowers(const Eigen::Vector3d& place, double reach, std::vector<DomainIndex>& found) const {
     found.clear();
@@ -140,17 +149,16 @@ double reach(const Bodies<Motion>& bodies, BodySlot slot) {
   return reach;
 }
 
-/// The mean distance of neighbours; along axes in which all places are much the same it does not count.
-inline double spacing(const std::vector<Eigen::Vector3d>& places) {
-  Eigen::Array3d low = places.front().array(), high = low;
-  for (const Eigen::Vector3d& place : places) low = low.min(place.array()), high = high.max(place.array());
+/// The mean distance of neighbours of so many places between two corners; along axes in which all places are much the
+/// same it does not count.
+inline double spacing(std::uint64_t places, const Eigen::Array3d& low, const Eigen::Array3d& high) {
   const Eigen::Array3d extents = high - low;
   double volume = 1;
   int axes = 0;
   for (int d = 0; d < 3; ++d) {
     if (extents[d] > 1e-3 * extents.maxCoeff()) volume *= extents[d], ++axes;
   }
-  return axes > 0 ? std::pow(volume / static_cast<double>(places.size()), 1.0 / axes) : 0;
+  return axes > 0 ? std::pow(volume / static_cast<double>(places), 1.0 / axes) : 0;
 }
 
 /// Whether each cell is so wide that much of it is far from all others.
@@ -173,24 +181,18 @@ std::size_t domains_wanted(const ParallelOptions& options, std::size_t threads, 
   return std::min({threads, bodies / bodies_per_domain, most_domains});
 }
 
-/// Finds out who owns and who knows each body at a time.
+/// Finds out who owns and who knows a body at a time. Returns the owner.
 template <class Motion>
-void assign_bodies(Division& division, const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, double now) {
-  division.owner.assign(bodies.slots(), Division::nobody);
-  division.known.assign(bodies.slots(), division.sets.number_of({}));
-  std::vector<DomainIndex> knowers;
-  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
-    if (!bodies.alive(slot)) continue;
-    const Eigen::Vector3d place = place_at(bodies.path(slot), now);
-    const auto moved = detail::moved_by(bodies, scripts, slot);
-    const double reach = detail::reach(bodies, slot);
-    const bool guided = moved == detail::MovedBy::itself;
-    const bool owned = moved == detail::MovedBy::others || (guided && reach <= division.largest_guided);
-    if (owned) division.owner[slot] = static_cast<DomainIndex>(division.partition.cell_of(place));
-    // Those without an owner stay known for good, so it counts how far they reach.
-    division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
-    division.known[slot] = division.sets.number_of(knowers);
-  }
+DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, const Scripts<Motion>& scripts,
+                        BodySlot slot, double now, std::vector<DomainIndex>& knowers) {
+  const Eigen::Vector3d place = place_at(bodies.path(slot), now);
+  const auto moved = detail::moved_by(bodies, scripts, slot);
+  const double reach = detail::reach(bodies, slot);
+  const bool guided = moved == detail::MovedBy::itself;
+  const bool owned = moved == detail::MovedBy::others || (guided && reach <= division.largest_guided);
+  // Those without an owner stay known for good, so it counts how far they reach.
+  division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
+  return owned ? static_cast<DomainIndex>(division.partition.cell_of(place)) : Division::nobody;
 }
 
 namespace detail {
@@ -198,67 +200,74 @@ namespace detail {
 /// How far bodies that move by themselves may reach if they are to have owners. If all had, windows of a scene with a
 /// large one would be short; so those that are larger than all that others move have none, unless they are many.
 template <class Motion>
-double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts) {
-  constexpr std::size_t few = 16, one_in = 100;
-  double largest_moved = 0;
+double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, std::span<const BodySlot> slots,
+                      Team& team) {
+  constexpr std::uint64_t few = 16, one_in = 100;
+  std::array<double, 1> largest_moved{0};
   std::vector<double> guided;
-  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
-    if (!bodies.alive(slot)) continue;
+  for (const BodySlot slot : slots) {
     const MovedBy moved = moved_by(bodies, scripts, slot);
-    if (moved == MovedBy::others) largest_moved = std::max(largest_moved, bodies[slot].bounding_radius);
+    if (moved == MovedBy::others) largest_moved[0] = std::max(largest_moved[0], bodies[slot].bounding_radius);
     if (moved == MovedBy::itself) guided.push_back(reach(bodies, slot));
   }
-  const auto larger = [&](double reach) { return reach > largest_moved; };
-  const auto many = static_cast<std::size_t>(std::ranges::count_if(guided, larger));
-  return largest_moved > 0 && many <= std::max(few, bodies.size() / one_in) ? largest_moved : never;
+  team.combine({}, largest_moved);
+  const auto larger = [&](double reach) { return reach > largest_moved[0]; };
+  std::array<std::uint64_t, 2> counts{static_cast<std::uint64_t>(std::ranges::count_if(guided, larger)), slots.size()};
+  team.combine(counts, {});
+  return largest_moved[0] > 0 && counts[0] <= std::max(few, counts[1] / one_in) ? largest_moved[0] : never;
 }
 
 }  // namespace detail
 
-/// Divides the bodies as they are at a time; none if the scene is to be run as one world.
+/// Divides the bodies as they are at a time; none if the scene is to be run as one world. `slots`: of the bodies that
+/// this process answers for; those of all processes are all bodies of the scene. The same in all processes.
 template <class Motion>
-std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, double now,
-                               const ParallelOptions& options, std::size_t threads) {
+std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts,
+                               std::span<const BodySlot> slots, double now, const ParallelOptions& options,
+                               std::size_t threads, Team& team) {
   std::vector<Eigen::Vector3d> places;
-  double farthest = 0, greatest_radius = 0, greatest_speed = 0, greatest_bend = 0;
+  double farthest = 0, radius = 0, speed = 0, bend = 0;
+  Eigen::Array3d high = Eigen::Array3d::Constant(-never), minus_low = high;
   const auto note = [&](const auto& path, double t) {
-    greatest_speed = std::max(greatest_speed, path.velocity(t).cwiseAbs().maxCoeff());
-    if constexpr (Motion::degree == 2) {
-      greatest_bend = std::max(greatest_bend, path.coefficients[2].cwiseAbs().maxCoeff());
-    }
+    speed = std::max(speed, path.velocity(t).cwiseAbs().maxCoeff());
+    if constexpr (Motion::degree == 2) bend = std::max(bend, path.coefficients[2].cwiseAbs().maxCoeff());
   };
-  const double largest_guided = detail::largest_guided(bodies, scripts);
-  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
-    if (!bodies.alive(slot)) continue;
+  const double largest_guided = detail::largest_guided(bodies, scripts, slots, team);
+  for (const BodySlot slot : slots) {
     const auto moved = detail::moved_by(bodies, scripts, slot);
     if (moved == detail::MovedBy::nothing) continue;
     if (moved == detail::MovedBy::itself && detail::reach(bodies, slot) > largest_guided) continue;
     const auto& path = bodies.path(slot);
-    places.push_back(place_at(path, now));
-    farthest = std::max(farthest, places.back().cwiseAbs().maxCoeff());
-    greatest_radius = std::max(greatest_radius, bodies[slot].bounding_radius);
+    const Eigen::Vector3d& place = places.emplace_back(place_at(path, now));
+    farthest = std::max(farthest, place.cwiseAbs().maxCoeff());
+    radius = std::max(radius, bodies[slot].bounding_radius);
+    high = high.max(place.array()), minus_low = minus_low.max(-place.array());
     note(path, std::max(now, path.start));
     for (const Motion& piece : scripts.to_come(slot)) note(path_of(piece), path_of(piece).start);
   }
-  if (places.size() < 2) return std::nullopt;
-  const double halo = 2 * greatest_radius + options.halo * detail::spacing(places);
+  std::array<std::uint64_t, 1> count{places.size()};
+  std::array greatest{farthest, radius,  speed,        bend,         high[0],
+                      high[1],  high[2], minus_low[0], minus_low[1], minus_low[2]};
+  team.combine(count, greatest);
+  if (count[0] < 2) return std::nullopt;
+  farthest = greatest[0], radius = greatest[1], speed = greatest[2], bend = greatest[3];
+  std::copy_n(&greatest[4], 3, high.begin()), std::copy_n(&greatest[7], 3, minus_low.begin());
+  const double halo = 2 * radius + options.halo * detail::spacing(count[0], -minus_low, high);
   // Places must be known far better than how far bodies are apart.
   if (!(std::isfinite(halo) && halo > 0x1p-20 * farthest)) return std::nullopt;
-  std::size_t wanted = domains_wanted<Motion>(options, threads, places.size());
-  Partition partition(places, wanted);
+  std::size_t wanted = domains_wanted<Motion>(options, threads, count[0]);
+  Partition partition(places, wanted, team);
   while (wanted > 1 && options.domains == 0 && !detail::wide_enough(partition, halo)) {
     wanted -= std::max<std::size_t>(1, wanted / 8);
-    partition = Partition(places, wanted);
+    partition = Partition(places, wanted, team);
   }
   if (partition.size() < 2) return std::nullopt;
-  Division division{.partition = std::move(partition),
-                    .halo = halo,
-                    .greatest_radius = greatest_radius,
-                    .greatest_speed = greatest_speed,
-                    .greatest_bend = greatest_bend,
-                    .largest_guided = largest_guided};
-  assign_bodies(division, bodies, scripts, now);
-  return division;
+  return Division{.partition = std::move(partition),
+                  .halo = halo,
+                  .greatest_radius = radius,
+                  .greatest_speed = speed,
+                  .greatest_bend = bend,
+                  .largest_guided = largest_guided};
 }
 
 }  // namespace kds::collision

@@ -44,8 +44,8 @@ std::size_t Domain<Motion>::place_of(BodySlot number) const {
 }
 
 template <class Motion>
-void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
-                              std::span<const Overlap> overlaps) {
+void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const BodySlot> come,
+                              const BodyStore<Motion>& store, std::span<const Overlap> overlaps) {
   if (!go.empty()) {
     std::vector<BodySlot> gone;
     std::erase_if(slots_, [&](BodySlot slot) {
@@ -57,7 +57,10 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
   }
   if (come.empty()) return;
   const auto before = static_cast<std::ptrdiff_t>(slots_.size());
-  const std::vector<BodySlot> taken = engine_.take_in(store, come, slots_);
+  std::vector<BodySlot> stored;
+  stored.reserve(come.size());
+  for (const BodySlot number : come) stored.push_back(store.find(number));
+  const std::vector<BodySlot> taken = engine_.take_in(store.engine(), stored, slots_, store.ignored());
   slots_.insert(slots_.end(), taken.begin(), taken.end());
   std::inplace_merge(slots_.begin(), slots_.begin() + before, slots_.end(),
                      [&](BodySlot a, BodySlot b) { return number(a) < number(b); });
@@ -81,7 +84,7 @@ void Domain<Motion>::begin_window() {
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
-    const DomainIndex owner = division_.owner[number(slot)];
+    const DomainIndex owner = division_.owner_of(number(slot));
     if (owner == Division::nobody) continue;
     if (owner != index_) {
       role_[slot] = Role::copy;
@@ -109,7 +112,7 @@ void Domain<Motion>::begin_window() {
 template <class Motion>
 std::uint32_t Domain<Motion>::strangers_to(BodySlot number) {
   const auto [found, fresh] =
-      strangers_to_.try_emplace(division_.known[number], static_cast<std::uint32_t>(strangers_.size()));
+      strangers_to_.try_emplace(division_.known_to(number), static_cast<std::uint32_t>(strangers_.size()));
   if (fresh) {
     auto& strangers = strangers_.emplace_back();
     const auto knowers = division_.knowers(number);
@@ -194,14 +197,16 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
 }
 
 template <class Motion>
-void Domain<Motion>::commit(Engine<Motion>& store) const {
-  for (const BodySlot slot : changed_) store.go_on_from(number(slot), engine_.progress(slot));
+void Domain<Motion>::commit(BodyStore<Motion>& store) const {
+  for (const BodySlot slot : changed_) {
+    store.engine().go_on_from(store.find(number(slot)), engine_.progress(slot));
+  }
 }
 
 template <class Motion>
-void Domain<Motion>::commit_meetings(Engine<Motion>& store) const {
+void Domain<Motion>::commit_meetings(BodyStore<Motion>& store) const {
   for (const BodySlot slot : changed_) {
-    if (engine_.has_met(slot)) store.note_meeting(number(slot));
+    if (engine_.has_met(slot)) store.engine().note_meeting(store.find(number(slot)));
   }
 }
 
@@ -217,19 +222,20 @@ std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
   std::vector<Overlap> all;
   for (const Overlap& overlap : engine_.overlaps()) {
     const BodySlot a = number(overlap.a), b = number(overlap.b);
-    const DomainIndex teller = division_.owner[a] != Division::nobody ? division_.owner[a] : division_.owner[b];
+    const DomainIndex of_a = division_.owner_of(a);
+    const DomainIndex teller = of_a != Division::nobody ? of_a : division_.owner_of(b);
     if (teller == index_ || teller == Division::nobody) all.push_back({a, b, overlap.passes_at});
   }
   return all;
 }
 
 template <class Motion>
-void Domain<Motion>::find_moves(const Engine<Motion>& store, double t) {
+void Domain<Motion>::find_moves(const BodyStore<Motion>& store, double t) {
   moves_.clear();
   std::vector<DomainIndex> knowers;
   for (const Followed& body : followed_) {
     const BodySlot moved = number(body.slot);
-    const Eigen::Vector3d place = place_at(store.bodies().path(moved), t);
+    const Eigen::Vector3d place = place_at(store.bodies().path(store.find(moved)), t);
     // Mostly it is deeper in the cell than any other's halo, as it was.
     if (division_.is_known_to_one(moved) && inside(place, division_.partition.cell(index_)) > division_.halo) continue;
     const auto owner = static_cast<DomainIndex>(division_.partition.cell_of(place));
@@ -282,7 +288,7 @@ template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   ++report_.computed;
   const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
-  const DomainIndex of_a = division_.owner[a], of_b = division_.owner[b];
+  const DomainIndex of_a = division_.owner_of(a), of_b = division_.owner_of(b);
   const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
   const bool mine = fixed ? is_first_to_know(a, b) : of_a == index_ || of_b == index_;
   if (!mine) return;
@@ -291,7 +297,7 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
   if (!logs_) return;
   const DomainIndex other = of_a == index_ ? of_b : of_a;
-  put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact});
+  put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact, event.user_data_a, event.user_data_b});
 }
 
 /// Independent events of one time come in the order of slots; those of contacts, which may follow from each other, are
@@ -336,7 +342,8 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
   const bool mine = role == Role::unowned ? is_first_to_know(number(slot), number(slot)) : role != Role::copy;
   if (mine) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
   if (mine && logs_) {
-    put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact});
+    put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact,
+         event.user_data});
   }
   changed(slot, event.contact.time);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/motions.hpp"
+#include "collision/parallel/body_store.hpp"
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/motion_changes.hpp"
 #include "collision/parallel/parallel_options.hpp"
@@ -20,16 +21,6 @@
 #include <vector>
 
 namespace kds::collision {
-
-namespace detail {
-
-/// The engine behind a world.
-template <class Motion>
-struct EngineOf {
-  static Engine<Motion>& of(BasicWorld<Motion>& world) { return *world.engine_; }
-};
-
-}  // namespace detail
 
 /// What has come of a window, or of its last step, in a domain.
 struct DomainReport {
@@ -79,9 +70,9 @@ class Domain final : private BasicWorldListener<Motion> {
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
-  /// Lets bodies go, and takes others in as `store` has them; both ascending. `overlaps`: all pairs of bodies known
-  /// here from then on that overlap, by their numbers.
-  void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const Engine<Motion>& store,
+  /// Lets bodies go, and takes others in as `store` has them; both by their numbers, ascending. `overlaps`: all pairs
+  /// of bodies known here from then on that overlap, by their numbers.
+  void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const BodyStore<Motion>& store,
                 std::span<const Overlap> overlaps);
   /// Begins a window: finds out which bodies are whose, as the division says.
   void begin_window();
@@ -107,15 +98,15 @@ class Domain final : private BasicWorldListener<Motion> {
 
   /// Tells `store` of the bodies of this domain that have changed. Domains may do the first at once, the second one by
   /// one.
-  void commit(Engine<Motion>& store) const;
-  void commit_meetings(Engine<Motion>& store) const;
+  void commit(BodyStore<Motion>& store) const;
+  void commit_meetings(BodyStore<Motion>& store) const;
   /// Numbers of owned bodies that the last step has changed.
   void append_changed(std::vector<BodySlot>& numbers) const;
   /// The pairs that overlap of which this domain knows all, by numbers; the lower first.
   std::vector<Overlap> overlaps() const;
   /// Finds the owned bodies that have moved to where others are to own or know them. `store`: has the owned bodies as
   /// they are at t.
-  void find_moves(const Engine<Motion>& store, double t);
+  void find_moves(const BodyStore<Motion>& store, double t);
   const BodyMoves& moves() const { return moves_; }
 
  private:

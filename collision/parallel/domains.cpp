@@ -10,8 +10,8 @@
 namespace kds::collision {
 
 template <class Motion>
-Domains<Motion>::Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& store, Team& team)
-    : options_(options), threads_(threads), store_(store), team_(team) {}
+Domains<Motion>::Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team)
+    : options_(options), threads_(threads), store_(options, whole), team_(team) {}
 
 template <class Motion>
 template <class Work>
@@ -33,24 +33,10 @@ void Domains<Motion>::each_process(std::span<const DomainIndex> domains, const T
 
 template <class Motion>
 bool Domains<Motion>::has(BodySlot number) const {
-  if (!any()) return true;
-  return division_->owner[number] == Division::nobody ? !domains_.empty() : is_here(division_->owner[number]);
-}
-
-template <class Motion>
-void Domains<Motion>::begin(Division division, std::vector<Overlap> overlaps, bool logs) {
-  drop();
-  division_ = std::make_unique<Division>(std::move(division));
-  overlaps_ = std::move(overlaps);
-  logs_ = logs;
-  changed_.clear();
-}
-
-template <class Motion>
-std::vector<typename Domains<Motion>::Overlap> Domains<Motion>::end() {
-  drop();
-  division_.reset();
-  return std::exchange(overlaps_, {});
+  if (!any()) return !store_.is_part();
+  if (store_.find(number) == no_body) return false;
+  const DomainIndex owner = division_->owner_of(number);
+  return owner == Division::nobody || is_here(owner);
 }
 
 template <class Motion>
@@ -68,14 +54,17 @@ void Domains<Motion>::make(double now) {
     domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_));
   }
   std::vector<std::vector<BodySlot>> known(domains_.size());
-  for (BodySlot number = 0; number < division_->known.size(); ++number) {
-    for (const DomainIndex domain : division_->knowers(number)) {
-      if (is_here(domain)) known[domain - first_].push_back(number);
+  const auto& bodies = store_.bodies();
+  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
+    if (!bodies.alive(slot)) continue;
+    for (const DomainIndex domain : division_->sets[division_->known[slot]]) {
+      if (is_here(domain)) known[domain - first_].push_back(bodies.number(slot));
     }
   }
   const auto overlaps = overlaps_by_domain();
   in_each([&](Domain<Motion>& domain) {
     const std::size_t i = domain.index() - first_;
+    if (store_.is_part()) std::sort(known[i].begin(), known[i].end());
     domain.exchange({}, known[i], store_, overlaps[i]);
     domain.begin_window();
   });
@@ -120,7 +109,7 @@ std::vector<double> Domains<Motion>::share_step() {
     if (team_.count() == 1 || !domain->report().divisible) continue;
     const auto index = static_cast<DomainIndex>(domain->index());
     for (const Change& change : domain->fresh()) {
-      if (division_->owner[change.number] != index) continue;
+      if (division_->owner_of(change.number) != index) continue;
       each_process(division_->knowers(change.number), [&](std::size_t process) { news[process].add(index, change); });
     }
   }
@@ -161,7 +150,8 @@ double Domains<Motion>::halo_used(const Domain<Motion>& domain, double nearest_s
 }
 
 template <class Motion>
-void Domains<Motion>::commit() {
+void Domains<Motion>::commit(double now) {
+  store_.note_passed(now);
   overlaps_.clear();
   for (const auto& domain : domains_) {
     const auto of_domain = domain->overlaps();
@@ -176,9 +166,13 @@ void Domains<Motion>::commit() {
   copies_made_ = 0;
 }
 
-/// Those of bodies at rest are told by all that know both, and others by several processes.
+/// Those of bodies at rest are told by all that know both, and others by several processes, also to some that store
+/// only one of the two.
 template <class Motion>
 void Domains<Motion>::sort_overlaps() {
+  std::erase_if(overlaps_, [this](const Overlap& overlap) {
+    return store_.find(overlap.a) == no_body || store_.find(overlap.b) == no_body;
+  });
   std::sort(overlaps_.begin(), overlaps_.end(),
             [](const Overlap& a, const Overlap& b) { return std::pair(a.a, a.b) < std::pair(b.a, b.b); });
   overlaps_.erase(std::unique(overlaps_.begin(), overlaps_.end(),
@@ -239,14 +233,28 @@ void Domains<Motion>::end_window(double now) {
   add_moves(news);
   if (team_.count() > 1) add_progress(news);
   changed_.clear();
+  exchange_news(letters_of(std::move(news)), [&](const WindowNews<Motion>& heard) { hear(heard); });
+  if (team_.count() > 1) store_.forget(gone_);
+  gone_.clear();
+  sort_overlaps();
+}
+
+template <class Motion>
+Letters Domains<Motion>::letters_of(NewsByProcess news) {
   Letters letters;
   for (auto& [process, of_process] : news) letters.to(process)(of_process);
+  return letters;
+}
+
+template <class Motion>
+template <class Take>
+void Domains<Motion>::exchange_news(Letters letters, const Take& take) {
   team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
     WindowNews<Motion> heard;
+    heard.newcomers.bodies.meshes = meshes_;
     reader(heard);
-    hear(heard);
+    take(heard);
   });
-  sort_overlaps();
 }
 
 /// The moves of bodies owned here: to those that knew them or are to know them, and to those that did not know them,
@@ -254,6 +262,7 @@ void Domains<Motion>::end_window(double now) {
 template <class Motion>
 void Domains<Motion>::add_moves(NewsByProcess& news) {
   std::vector<DomainIndex> concerned, come;
+  std::map<std::size_t, std::vector<BodySlot>> newcomers;
   for (const auto& domain : domains_) {
     domain->moves().each([&](BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers) {
       const auto before = division_->knowers(number);
@@ -266,11 +275,12 @@ void Domains<Motion>::add_moves(NewsByProcess& news) {
       };
       each_process(concerned, [&](std::size_t process) { news[process].moves.add(number, owner, knowers); });
       each_process(come, [&](std::size_t process) {
-        if (!knew(process)) news[process].bodies.push_back(news_of(number));
+        if (!knew(process)) newcomers[process].push_back(store_.find(number));
       });
       note_move(number, owner, knowers);
     });
   }
+  for (const auto& [process, slots] : newcomers) news[process].newcomers = store_.engine().pack(slots, meshes_);
 }
 
 /// What has changed of bodies owned here, and which pairs overlap: to those that are to know of them.
@@ -278,7 +288,7 @@ template <class Motion>
 void Domains<Motion>::add_progress(NewsByProcess& news) {
   std::map<std::size_t, std::vector<BodySlot>> told;
   for (const auto& [process, of_process] : news) {
-    for (const BodyNews<Motion>& body : of_process.bodies) told[process].push_back(body.number);
+    told[process] = of_process.newcomers.numbers;
     std::sort(told[process].begin(), told[process].end());
   }
   std::sort(changed_.begin(), changed_.end());
@@ -290,7 +300,7 @@ void Domains<Motion>::add_progress(NewsByProcess& news) {
   }
   for (const Overlap& overlap : overlaps_) {
     // To all that know one of the two: this process may not know who is to know the other.
-    const bool first_moves = division_->owner[overlap.a] != Division::nobody;
+    const bool first_moves = division_->owner_of(overlap.a) != Division::nobody;
     each_process(division_->knowers(first_moves ? overlap.a : overlap.b),
                  [&](std::size_t process) { news[process].overlaps.push_back(overlap); });
   }
@@ -298,7 +308,9 @@ void Domains<Motion>::add_progress(NewsByProcess& news) {
 
 template <class Motion>
 BodyNews<Motion> Domains<Motion>::news_of(BodySlot number) const {
-  return {number, store_.progress(number), store_.has_met(number)};
+  const Engine<Motion>& engine = store_.engine();
+  const BodySlot slot = store_.find(number);
+  return {number, engine.progress(slot), engine.has_met(slot)};
 }
 
 /// Notes who owns and knows a body from now on, and which domains of this process are to let it go and to take it in.
@@ -315,18 +327,27 @@ void Domains<Motion>::note_move(BodySlot number, DomainIndex owner, std::span<co
   for (const DomainIndex domain : differ) {
     if (is_here(domain)) come_[domain - first_].push_back(number);
   }
-  division_->owner[number] = owner;
-  division_->known[number] = division_->sets.number_of(knowers);
+  division_->note(number, owner, knowers);
+  if (std::ranges::none_of(knowers, [this](DomainIndex domain) { return is_here(domain); })) gone_.push_back(number);
+}
+
+/// Stores bodies that no domain of this process has known.
+template <class Motion>
+void Domains<Motion>::take_in(const Parcel<Motion>& newcomers) {
+  store_.add(newcomers);
+  for (const BodySlot number : newcomers.numbers) division_->note(number, Division::nobody, {});
 }
 
 template <class Motion>
 void Domains<Motion>::hear(const WindowNews<Motion>& news) {
+  take_in(news.newcomers);
   news.moves.each([&](BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers) {
     note_move(number, owner, knowers);
   });
   for (const BodyNews<Motion>& body : news.bodies) {
-    store_.go_on_from(body.number, body.progress);
-    if (body.met) store_.note_meeting(body.number);
+    const BodySlot slot = store_.find(body.number);
+    store_.engine().go_on_from(slot, body.progress);
+    if (body.met) store_.engine().note_meeting(slot);
   }
   overlaps_.insert(overlaps_.end(), news.overlaps.begin(), news.overlaps.end());
 }
@@ -346,29 +367,6 @@ void Domains<Motion>::exchange() {
     domain.exchange(go, come_[i], store_, overlaps[i]);
     domain.begin_window();
   });
-}
-
-template <class Motion>
-void Domains<Motion>::share_all() {
-  if (team_.count() == 1) return;
-  WindowNews<Motion> news;
-  news.overlaps = overlaps_;
-  for (BodySlot number = 0; number < division_->owner.size(); ++number) {
-    const DomainIndex owner = division_->owner[number];
-    const bool tells =
-        division_->is_everywhere(number) ? team_.rank() == 0 : owner != Division::nobody && is_here(owner);
-    if (tells) news.bodies.push_back(news_of(number));
-  }
-  Letters letters;
-  for (std::size_t process = 0; process < team_.count(); ++process) {
-    if (process != team_.rank()) letters.to(process)(news);
-  }
-  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
-    WindowNews<Motion> heard;
-    reader(heard);
-    hear(heard);
-  });
-  sort_overlaps();
 }
 
 template <class Motion>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/motions.hpp"
+#include "collision/parallel/body_store.hpp"
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/domain.hpp"
 #include "collision/parallel/news.hpp"
@@ -13,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <span>
@@ -20,32 +22,41 @@
 
 namespace kds::collision {
 
-/// The domains of a divided scene, and `store`, which has all bodies: each as it was at the end of the last step that
+/// The domains of a divided scene, and `store`, which has its bodies: each as it was at the end of the last step that
 /// was committed.
 ///
-/// Where several processes run the scene, each runs some of the domains and has a store of its own, in which the bodies
-/// that its domains own are right; those that they know become right whenever a window ends (end_window()), and all
-/// when the processes share all (share_all()). Of the division it has right who owns and knows the bodies that its
-/// domains know. All processes make the same calls; what they decide by, the outcome of a step, is the same in all.
-/// Processes write only to those whose domains know bodies of theirs, or have cells which these may come near.
+/// Where several processes run the scene, each runs some of the domains and stores the bodies that these know. Those
+/// that they own are right; their copies become right whenever a window ends (end_window()). All processes make the
+/// same calls; what they decide by, the outcome of a step, is the same in all. Processes write only to those whose
+/// domains know bodies of theirs, or have cells which these may come near.
 template <class Motion>
 class Domains {
  public:
   using Overlap = typename Engine<Motion>::Overlap;
 
-  /// `logs`: whether events are recorded. The store must outlive this.
-  Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& store, Team& team);
+  /// `whole`: the world of the whole scene, which must outlive this.
+  Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team);
 
   bool any() const { return division_ != nullptr; }
   std::size_t size() const { return any() ? division_->partition.size() : 1; }
   const Division& division() const { return *division_; }
-  /// Whether the body is right in the store of this process.
+  BodyStore<Motion>& store() { return store_; }
+  const BodyStore<Motion>& store() const { return store_; }
+  /// Whether this process stores the body, and right.
   bool has(BodySlot number) const;
+  /// Slots, in the store, of the bodies that this process answers for: each body of the scene is in one process.
+  std::vector<BodySlot> answered() const;
 
-  /// Divides the bodies, which must all be right in the store. `overlaps`: all pairs that overlap, by numbers. Then
-  /// make().
-  void begin(Division division, std::vector<Overlap> overlaps, bool logs);
-  /// There are no domains any more. Returns the pairs that overlap of which this process knows.
+  // divide_bodies.cpp
+  /// As BasicParallelWorld::add_shares(), at `now`.
+  void add_shares(std::size_t count, const std::function<BasicBodyDescription<Motion>(std::size_t)>& body, double now);
+  /// Divides the bodies as they are in the stores. `answered`: as answered() was. `overlaps`: all pairs that overlap of
+  /// which one is among these, by numbers. `logs`: whether events are recorded. Then make().
+  void begin(Division division, std::span<const BodySlot> answered, std::vector<Overlap> overlaps, bool logs,
+             double now);
+  /// The pairs that overlap of which this process knows.
+  std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
+  /// There are no domains any more, and the world of each process has all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
 
   /// In the window that begins next, a path may leave the chord between two of its places by this much.
@@ -56,8 +67,8 @@ class Domains {
   void run(double until);
   /// What has come of it.
   const StepOutcome& outcome() const { return outcome_; }
-  /// The step holds: the store follows.
-  void commit();
+  /// The step, up to `now`, holds: the store follows.
+  void commit(double now);
   /// The events of the step that was committed, of the domains of this process.
   StepEvents take_step();
   /// The same of all domains, in process 0; none in others.
@@ -68,8 +79,6 @@ class Domains {
   void end_window(double now);
   /// The domains take in and let go what they are to, and begin a new window.
   void exchange();
-  /// Makes all bodies right in the stores of all processes, and all overlaps known.
-  void share_all();
 
   /// The work of the domains that this process runs, and has run.
   WorldCounters work() const;
@@ -78,6 +87,7 @@ class Domains {
   using Change = MotionChange<Motion>;
   using NewsByProcess = std::map<std::size_t, WindowNews<Motion>>;
 
+  static Letters letters_of(NewsByProcess news);
   template <class Work>
   void in_each(const Work& work);
   std::size_t process_of(std::size_t domain) const { return domain * team_.count() / size(); }
@@ -93,14 +103,25 @@ class Domains {
   void add_moves(NewsByProcess& news);
   void add_progress(NewsByProcess& news);
   void note_move(BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers);
+  void take_in(const Parcel<Motion>& newcomers);
   void hear(const WindowNews<Motion>& news);
+  template <class Take>
+  void exchange_news(Letters letters, const Take& take);
+
+  // divide_bodies.cpp
+  void share_meshes();
+  bool answers_for(BodySlot number) const;
+  std::uint64_t rounds_of(std::size_t bodies, std::size_t at_once);
+  void send_bodies(Engine<Motion>& from, std::span<const BodySlot> answered, double now);
+  void send_overlaps(Engine<Motion>& from, std::span<const BodySlot> answered, std::vector<Overlap> overlaps,
+                     double now);
   std::vector<std::vector<Overlap>> overlaps_by_domain() const;
   void sort_overlaps();
   void drop();
 
   const WorldOptions options_;
   const std::size_t threads_;
-  Engine<Motion>& store_;
+  BodyStore<Motion> store_;
   Team& team_;
   bool logs_ = false;
   std::unique_ptr<Division> division_;
@@ -111,7 +132,9 @@ class Domains {
   std::vector<BodySlot> changed_;                       ///< owned here, since others were told of them
   /// By domain of this process: numbers of those that are to go and come, but for copies that are wrong.
   std::vector<std::vector<BodySlot>> go_, come_;
-  std::uint64_t copies_made_ = 0;  ///< of bodies owned here, since the last step that held
+  std::vector<BodySlot> gone_;                       ///< numbers of those that no domain of this process is to know
+  std::vector<std::shared_ptr<const Mesh>> meshes_;  ///< of all bodies; the same in all processes
+  std::uint64_t copies_made_ = 0;                    ///< of bodies owned here, since the last step that held
   /// Pairs that overlap, by numbers: where a window begins all of which a domain of this process knows both bodies.
   std::vector<Overlap> overlaps_;
   WorldCounters work_;  ///< of domains that there were

@@ -4,6 +4,7 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/motion_changes.hpp"
 #include "collision/world/engine.hpp"
+#include "collision/world/parcel.hpp"
 
 #include <vector>
 
@@ -50,16 +51,17 @@ struct BodyNews {
   }
 };
 
-/// What a process tells another when a window ends.
+/// What a process tells another when a window ends, or the scene is divided.
 template <class Motion>
 struct WindowNews {
+  Parcel<Motion> newcomers{};  ///< that the other has not stored, and is to know
   BodyMoves moves{};
   std::vector<BodyNews<Motion>> bodies{};
   std::vector<typename Engine<Motion>::Overlap> overlaps{};
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(moves, bodies, overlaps);
+    archive(newcomers, moves, bodies, overlaps);
   }
 };
 

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -37,6 +38,8 @@ const ParallelOptions& validated(const ParallelOptions& options) {
 /// Runs the scene in windows, or as one world.
 template <class BodyMotionType>
 class BasicParallelWorld<BodyMotionType>::Runner final {
+  using Overlap = typename Engine<Motion>::Overlap;
+
  public:
   Runner(const WorldOptions& options, const ParallelOptions& parallel, ParallelListener* listener, Processes* processes)
       : parallel_(validated(parallel)),
@@ -57,10 +60,15 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
           "ParallelWorld::whole: a listener has thrown, and the events after that are still to be told, "
           "by advance_to()");
     }
-    if (divided()) gather();
+    if (apart()) gather();
     return world_;
   }
   const World& world() const { return world_; }
+  void add_shares(std::size_t count, const std::function<Description(std::size_t)>& body) {
+    require_outside("ParallelWorld::add_shares");
+    if (world_.size() > 0) throw std::logic_error("ParallelWorld::add_shares: there are bodies already");
+    domains_.add_shares(count, body, now_);
+  }
   template <class Archive>
   void archive(Archive& archive) {
     whole().archive(archive);
@@ -73,17 +81,21 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     }
   }
   bool divided() const { return domains_.any(); }
+  /// Whether the bodies are elsewhere than in the whole world.
+  bool apart() const { return divided() || domains_.store().is_part(); }
   std::size_t domains() const { return domains_.size(); }
+  std::size_t stored() const { return domains_.store().bodies().size(); }
   double now() const { return now_; }
   const ParallelCounters& counters() const { return counters_; }
   WorldCounters work() const { return domains_.work() + world_.counters(); }
   const MessageCounters& messages() const { return team_.counters(); }
   const Motion& motion(BodyId id) const {
-    const Motion& motion = world_.motion(id);
+    const BodyStore<Motion>& store = domains_.store();
+    if (!store.is_part() || !store_.bodies().has_lent(id)) return world_.motion(id);
     if (!domains_.has(body_slot(id))) {
       throw std::logic_error("ParallelWorld::motion: the body is owned by another process; whole() has all");
     }
-    return motion;
+    return store.bodies().motion(store.find(body_slot(id)));
   }
 
   void advance_to(double t) {
@@ -92,7 +104,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       throw std::invalid_argument("ParallelWorld::advance_to: " + std::to_string(t) +
                                   " is not a finite time from now on (" + std::to_string(now_) + ")");
     }
-    if (!divided() && world_.now() != now_) {
+    if (!apart() && world_.now() != now_) {
       throw std::logic_error("ParallelWorld::advance_to: the whole world has been advanced by itself");
     }
     tell_events();
@@ -126,6 +138,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   /// A stretch of time as one world, up to t. Each is longer than the one before, until the scene can be divided.
   void run_whole(double t) {
+    if (apart()) gather();
     const double end = stretch_ > 0 && now_ + stretch_ > now_ ? std::min(t, now_ + stretch_) : t;
     stretch_ *= 2;
     ++counters_.stretches_whole;
@@ -148,20 +161,21 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       stretch_ = 0;
       return false;
     }
-    if (!unstarted_) {  // What callers have changed at this time has its consequences first.
+    if (!unstarted_ && !apart()) {  // What callers have changed at this time has its consequences first.
       const kds::detail::RaisedFlag telling(telling_);
       world_.advance_to(now_);
     }
-    if (!store_.is_divisible()) return false;
-    auto division = collision::divide(store_.bodies(), store_.scripts(), now_, parallel_, workers());
+    if (!team_.all(domains_.store().engine().is_divisible())) return false;
+    const std::vector<BodySlot> answered = domains_.answered();
+    auto division = find_division(answered);
     if (!division) return false;
     if (!(length_.seconds() > 0)) {
       const double fastest = division->greatest_speed + std::sqrt(division->greatest_bend * division->halo);
       length_ = WindowLength(fastest > 0 ? division->room() / (4 * fastest) : parallel_.longest_window);
     }
-    auto overlaps = store_.overlaps();
-    store_.set_aside();
-    domains_.begin(std::move(*division), std::move(overlaps), logs_);
+    std::vector<Overlap> overlaps;
+    if (!apart()) overlaps = store_.overlaps(), store_.set_aside();
+    domains_.begin(std::move(*division), answered, std::move(overlaps), logs_, now_);
     begin_window();
     domains_.make(now_);
     ++counters_.divisions;
@@ -169,9 +183,14 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     return true;
   }
 
+  /// `answered`: as Domains::answered().
+  std::optional<Division> find_division(std::span<const BodySlot> answered) {
+    const Engine<Motion>& engine = domains_.store().engine();
+    return collision::divide(engine.bodies(), engine.scripts(), answered, now_, parallel_, workers(), team_);
+  }
+
   /// The scene is one world again, in every process.
   void gather() {
-    domains_.share_all();
     const auto overlaps = domains_.end();
     store_.go_on(now_, overlaps);
   }
@@ -228,8 +247,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void commit(double end) {
     unstarted_ = false;
-    store_.note_passed(end);
-    domains_.commit();
+    domains_.commit(end);
     const StepOutcome& outcome = domains_.outcome();
     counters_.overlaps += outcome.told[0], counters_.wall_contacts += outcome.told[1];
     counters_.contacts += outcome.told[2], counters_.separations += outcome.told[3];
@@ -254,11 +272,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
   void divide_anew() {
-    domains_.share_all();
-    auto division = collision::divide(store_.bodies(), store_.scripts(), now_, parallel_, workers());
+    const std::vector<BodySlot> answered = domains_.answered();
+    auto division = find_division(answered);
     if (!division) return gather();
-    auto overlaps = domains_.end();
-    domains_.begin(std::move(*division), std::move(overlaps), logs_);
+    domains_.begin(std::move(*division), answered, domains_.take_overlaps(), logs_, now_);
     begin_window();
     domains_.make(now_);
     ++counters_.divisions;
@@ -272,20 +289,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   void tell_events() {
     const kds::detail::RaisedFlag telling(telling_);
     if (step_) parallel_.steps->on_step(*std::exchange(step_, std::nullopt));
-    const auto& bodies = store_.bodies();
-    while (!events_.empty()) {
-      const DomainEvent event = events_.take_next();
-      const auto user_data = [&](BodySlot slot) { return bodies[slot].user_data; };
-      if (event.kind == DomainEvent::Kind::wall) {
-        listener_->wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, user_data(event.a)});
-        continue;
-      }
-      const PairEvent pair{bodies.id_of(event.a), bodies.id_of(event.b), event.contact, user_data(event.a),
-                           user_data(event.b)};
-      if (event.kind == DomainEvent::Kind::contact) listener_->contact(pair);
-      if (event.kind == DomainEvent::Kind::separation) listener_->separation(pair);
-      if (event.kind == DomainEvent::Kind::overlap) listener_->overlap(pair);
-    }
+    while (!events_.empty()) relay(events_.take_next(), store_.bodies(), *listener_);
   }
 
   const ParallelOptions parallel_;
@@ -294,7 +298,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   ParallelListener* listener_;
   ParallelCounters counters_;
   RelayedEvents<Motion> relayed_;
-  World world_;            ///< runs the scene while it is one world; else only its bodies count
+  World world_;            ///< runs the scene while it is one world; else has its bodies, or lends them
   Engine<Motion>& store_;  ///< of world_
   double now_;
   Domains<Motion> domains_;         ///< none while the scene is one world
@@ -324,6 +328,11 @@ typename BasicParallelWorld<Motion>::World& BasicParallelWorld<Motion>::whole() 
 }
 
 template <class Motion>
+void BasicParallelWorld<Motion>::add_shares(std::size_t count, const std::function<Description(std::size_t)>& body) {
+  runner_->add_shares(count, body);
+}
+
+template <class Motion>
 void BasicParallelWorld<Motion>::advance_to(double t) {
   runner_->advance_to(t);
 }
@@ -341,6 +350,11 @@ std::size_t BasicParallelWorld<Motion>::size() const {
 template <class Motion>
 const Motion& BasicParallelWorld<Motion>::motion(BodyId id) const {
   return runner_->motion(id);
+}
+
+template <class Motion>
+std::size_t BasicParallelWorld<Motion>::stored() const {
+  return runner_->stored();
 }
 
 template <class Motion>

@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string_view>
 
@@ -43,7 +44,8 @@ class ParallelListener {
 /// pieces. What this costs is in docs/parallel.md. Timers ring, and nobody is told.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
-/// the worlds of all domains, and some 200 bytes more for each body.
+/// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own
+/// domains and of the bodies that these know.
 template <class BodyMotionType>
 class BasicParallelWorld final {
  public:
@@ -55,10 +57,10 @@ class BasicParallelWorld final {
   /// one world. The listener and the processes, if there are any, must outlive this.
   ///
   /// `processes`: if not null, they run the scene together. Each constructs a world with the same options, adds the
-  /// same bodies, and makes the same calls of functions that are not const, and each runs some of the domains. The
-  /// listener of process 0 is told of all events, and others are not told, unless ParallelOptions::steps takes them in
-  /// each process. A process in which something is thrown leaves the others waiting: who calls has to end them
-  /// (MPI_Abort).
+  /// same bodies (or its share of them, add_shares()), and makes the same calls of functions that are not const, and
+  /// each runs some of the domains. The listener of process 0 is told of all events, and others are not told, unless
+  /// ParallelOptions::steps takes them in each process. A process in which something is thrown leaves the others
+  /// waiting: who calls has to end them (MPI_Abort).
   explicit BasicParallelWorld(const WorldOptions& options, const ParallelOptions& parallel = {},
                               ParallelListener* listener = nullptr, Processes* processes = nullptr);
   ~BasicParallelWorld();
@@ -68,9 +70,16 @@ class BasicParallelWorld final {
   /// As of a World.
   BodyId add_body(const Description& description) { return whole().add_body(description); }
   void reserve(std::size_t bodies) { whole().reserve(bodies); }
+  /// The same where each process adds some bodies alone, `body(0)` to `body(count - 1)`: those of process 0 are the
+  /// first of the scene, then come those of process 1, and so on; so ids are as if one had added all. No process has
+  /// all bodies in memory then, until the scene is run as one world or whole() is called. All processes call it, once,
+  /// before there are any bodies; else throws std::logic_error. Throws as add_body() and, naming the body,
+  /// std::invalid_argument for one that has a box function, is attached to another, or is a mesh that bends.
+  void add_shares(std::size_t count, const std::function<Description(std::size_t)>& body);
 
   /// The scene as one world, at now(): for all changes, queries, audits and snapshots. It must not be advanced, and is
-  /// valid until the next advance_to(). Costs, after an advance_to(), what adding all bodies costs.
+  /// valid until the next advance_to(). Costs, after an advance_to(), what adding all bodies costs; each of several
+  /// processes has all of them in memory then.
   World& whole();
 
   /// Processes everything up to and including t. Throws as World::advance_to(), and std::logic_error if called from
@@ -88,6 +97,8 @@ class BasicParallelWorld final {
   /// Throws std::out_of_range as World::motion(), std::logic_error for a body that another process owns; whole() has
   /// all.
   const Motion& motion(BodyId id) const;
+  /// How many bodies this process stores: those that its domains know, and all while the scene is one world.
+  std::size_t stored() const;
   /// Into how many domains the scene is divided: 1 while it is run as one world.
   std::size_t domains() const;
   ParallelCounters counters() const;

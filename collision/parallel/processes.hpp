@@ -94,6 +94,13 @@ class Team {
     processes_->combine(sums, maxima);
   }
 
+  /// Whether it is so in all processes.
+  bool all(bool here) {
+    std::array<std::uint64_t, 1> others{here ? 0u : 1u};
+    combine(others, {});
+    return others[0] == 0;
+  }
+
   /// What process 0 says. No process goes on before all are here.
   std::uint64_t of_first(std::uint64_t value) {
     std::array<std::uint64_t, 1> sum{rank() == 0 ? value : 0};

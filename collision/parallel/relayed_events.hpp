@@ -1,12 +1,27 @@
-// The events of a scene while it is run as one world.
+// The events of a scene, as the listener of a ParallelWorld is told of them.
 #pragma once
 
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/parallel_world.hpp"
+#include "collision/parallel/world_events.hpp"
+#include "collision/world/bodies.hpp"
 
 namespace kds::collision {
 
-/// Passes on what a World tells to the listener of a ParallelWorld, and counts it.
+/// Tells a listener of an event that a domain has recorded. `bodies`: of the whole scene, for their ids.
+template <class Motion>
+void relay(const DomainEvent& event, const Bodies<Motion>& bodies, ParallelListener& listener) {
+  if (event.kind == DomainEvent::Kind::wall) {
+    return listener.wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, event.user_data_a});
+  }
+  const PairEvent pair{bodies.id_of(event.a), bodies.id_of(event.b), event.contact, event.user_data_a,
+                       event.user_data_b};
+  if (event.kind == DomainEvent::Kind::contact) listener.contact(pair);
+  if (event.kind == DomainEvent::Kind::separation) listener.separation(pair);
+  if (event.kind == DomainEvent::Kind::overlap) listener.overlap(pair);
+}
+
+/// Passes on what a World tells while the scene is run as one, and counts it.
 template <class Motion>
 class RelayedEvents final : public BasicWorldListener<Motion> {
  public:

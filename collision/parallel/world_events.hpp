@@ -24,10 +24,12 @@ struct DomainEvent {
   BodySlot a;
   BodySlot b;  ///< of a wall its number
   Contact contact;
+  std::uint64_t user_data_a = 0;  ///< of the bodies
+  std::uint64_t user_data_b = 0;
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(kind, other_owner, a, b, contact);
+    archive(kind, other_owner, a, b, contact, user_data_a, user_data_b);
   }
 
   /// Contacts and separations of one time come by their bodies alone.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -90,17 +91,17 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
 }
 
 template <class Motion>
-BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot number) {
+BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
   const BodySlot slot = new_slot();
-  bodies_[slot] = from.bodies_[number];
-  movers_[slot] = from.movers_[number];
-  if constexpr (turns<Motion>) motions_[slot] = from.motions_[number];
+  bodies_[slot] = from.bodies_[of];
+  movers_[slot] = from.movers_[of];
+  if constexpr (turns<Motion>) motions_[slot] = from.motions_[of];
   bodies_[slot].entered = false;
   filters_ = filters_ || filter(slot) != CollisionFilter{};
   sensors_ = sensors_ || bodies_[slot].sensor;
   ++alive_;
   if (numbers_.size() <= slot) numbers_.resize(bodies_.size());
-  numbers_[slot] = number;
+  numbers_[slot] = from.number(of);
   return slot;
 }
 
@@ -180,36 +181,97 @@ std::vector<std::shared_ptr<const Mesh>> Bodies<Motion>::meshes() const {
 }
 
 template <class Motion>
+template <class One>
+void Bodies<Motion>::describe(BodySlot slot, One& one, const std::vector<std::shared_ptr<const Mesh>>& meshes) const {
+  const Body& b = bodies_[slot];
+  if (!b.alive) return;
+  one.alive = true, one.entered = b.entered;
+  one.placed = shape(slot);
+  if (const auto mesh = mesh_of(one.placed.shape)) {
+    one.mesh = static_cast<std::uint32_t>(std::find(meshes.begin(), meshes.end(), mesh) - meshes.begin());
+  }
+  one.motion = motion(slot);
+  one.mass = b.mass, one.inverse_mass = b.inverse_mass, one.restitution = b.restitution;
+  one.filter = b.filter, one.volume = b.volume, one.sensor = b.sensor;
+  one.self_contacts = b.self_contacts, one.user_data = b.user_data;
+  one.meetings = b.meetings, one.burst_start = b.burst_start;
+  if constexpr (turns<Motion>) {
+    one.inverse_inertia = b.inverse_inertia;
+    one.friction = b.friction, one.tangential_restitution = b.tangential_restitution;
+    one.rolling_friction = b.rolling_friction;
+    one.tumbles = b.tumbles;
+  }
+  if constexpr (Motion::degree <= 2) one.force = free_acceleration(slot);
+  if constexpr (Motion::degree >= 3) one.given = b.given;
+}
+
+template <class Motion>
 typename Bodies<Motion>::Image Bodies<Motion>::image() const {
   Image image;
   image.meshes = meshes();
-  for (BodySlot slot = 0; slot < bodies_.size(); ++slot) {
-    const Body& b = bodies_[slot];
-    auto& to = image.bodies.emplace_back();
-    if (!b.alive) continue;
-    to.alive = true, to.entered = b.entered;
-    to.placed = shape(slot);
-    if (const auto mesh = mesh_of(to.placed.shape)) {
-      to.mesh =
-          static_cast<std::uint32_t>(std::find(image.meshes.begin(), image.meshes.end(), mesh) - image.meshes.begin());
-    }
-    to.motion = motion(slot);
-    to.mass = b.mass, to.inverse_mass = b.inverse_mass, to.restitution = b.restitution;
-    to.filter = b.filter, to.volume = b.volume, to.sensor = b.sensor;
-    to.self_contacts = b.self_contacts, to.user_data = b.user_data;
-    to.meetings = b.meetings, to.burst_start = b.burst_start;
-    if constexpr (turns<Motion>) {
-      to.inverse_inertia = b.inverse_inertia;
-      to.friction = b.friction, to.tangential_restitution = b.tangential_restitution;
-      to.rolling_friction = b.rolling_friction;
-      to.tumbles = b.tumbles;
-    }
-    if constexpr (Motion::degree <= 2) to.force = free_acceleration(slot);
-    if constexpr (Motion::degree >= 3) to.given = b.given;
-  }
+  for (BodySlot slot = 0; slot < bodies_.size(); ++slot) describe(slot, image.bodies.emplace_back(), image.meshes);
   image.generations = generations_, image.free = free_, image.waiting = waiting_;
   image.ignored = ignored_.pairs(), image.attached = attachments_.all();
   return image;
+}
+
+template <class Motion>
+typename Bodies<Motion>::Image Bodies<Motion>::image_of(std::span<const BodySlot> slots,
+                                                        std::vector<std::shared_ptr<const Mesh>> meshes) const {
+  Image image;
+  image.meshes = std::move(meshes);
+  image.bodies.reserve(slots.size());
+  for (const BodySlot slot : slots) describe(slot, image.bodies.emplace_back(), image.meshes);
+  return image;
+}
+
+template <class Motion>
+BodySlot Bodies<Motion>::put(const Image& image, std::size_t place, BodySlot number) {
+  const BodySlot slot = new_slot();
+  if (numbers_.size() <= slot) numbers_.resize(bodies_.size());
+  numbers_[slot] = number;
+  become(slot, image.bodies[place]);
+  return slot;
+}
+
+template <class Motion>
+void Bodies<Motion>::put_back(const Image& image, std::size_t place, BodySlot slot) {
+  become(slot, image.bodies[place]);
+}
+
+template <class Motion>
+void Bodies<Motion>::number_from(BodySlot first) {
+  numbers_.resize(bodies_.size());
+  std::iota(numbers_.begin(), numbers_.end(), first);
+}
+
+template <class Motion>
+void Bodies<Motion>::lend() {
+  lent_ = bodies_.size();
+  // Their memory is given back, as it would not be if `{}` were assigned.
+  LargeVector<Mover>().swap(movers_);
+  LargeVector<Motion>().swap(motions_);
+  LargeVector<Body>().swap(bodies_);
+  std::vector<BodySlot>().swap(waiting_);
+}
+
+template <class Motion>
+void Bodies<Motion>::lend(std::size_t bodies) {
+  lent_ = alive_ = bodies;
+}
+
+template <class Motion>
+bool Bodies<Motion>::has_lent(BodyId id) const {
+  const BodySlot slot = body_slot(id);
+  return slot < lent_ && generation(slot) == body_generation(id) &&
+         std::find(free_.begin(), free_.end(), slot) == free_.end();
+}
+
+template <class Motion>
+void Bodies<Motion>::take_back() {
+  bodies_.resize(lent_), movers_.resize(lent_);
+  if constexpr (turns<Motion>) motions_.resize(lent_);
+  alive_ = lent_ = 0;
 }
 
 template <class Motion>
@@ -233,28 +295,32 @@ void Bodies<Motion>::become(const Image& image) {
   for (const auto& [a, b] : image.ignored) ignore(a, b, true);
   for (const auto& [sensor, owner] : image.attached) attach(sensor, owner);
   for (BodySlot slot = 0; slot < count; ++slot) {
-    const auto& from = image.bodies[slot];
-    if (!from.alive) continue;
-    ++alive_;
-    Body& b = bodies_[slot];
-    b.alive = true, b.entered = from.entered;
-    set_shape(slot, from.placed);
-    move(slot, from.motion);
-    b.mass = from.mass, b.inverse_mass = from.inverse_mass, b.restitution = from.restitution;
-    set_filter(slot, from.filter);
-    b.volume = from.volume, b.sensor = from.sensor;
-    b.self_contacts = from.self_contacts, b.user_data = from.user_data;
-    if constexpr (turns<Motion>) {
-      b.inverse_inertia = from.inverse_inertia;
-      b.friction = from.friction, b.tangential_restitution = from.tangential_restitution;
-      b.rolling_friction = from.rolling_friction;
-      b.tumbles = from.tumbles;
-    }
-    sensors_ = sensors_ || b.sensor;
-    b.meetings = from.meetings, b.burst_start = from.burst_start;
-    if constexpr (Motion::degree == 2) b.force = from.force;
-    if constexpr (Motion::degree >= 3) b.given = from.given;
+    if (image.bodies[slot].alive) become(slot, image.bodies[slot]);
   }
+}
+
+template <class Motion>
+template <class One>
+void Bodies<Motion>::become(BodySlot slot, const One& one) {
+  ++alive_;
+  Body& b = bodies_[slot];
+  b.alive = true, b.entered = one.entered;
+  set_shape(slot, one.placed);
+  move(slot, one.motion);
+  b.mass = one.mass, b.inverse_mass = one.inverse_mass, b.restitution = one.restitution;
+  set_filter(slot, one.filter);
+  b.volume = one.volume, b.sensor = one.sensor;
+  b.self_contacts = one.self_contacts, b.user_data = one.user_data;
+  if constexpr (turns<Motion>) {
+    b.inverse_inertia = one.inverse_inertia;
+    b.friction = one.friction, b.tangential_restitution = one.tangential_restitution;
+    b.rolling_friction = one.rolling_friction;
+    b.tumbles = one.tumbles;
+  }
+  sensors_ = sensors_ || b.sensor;
+  b.meetings = one.meetings, b.burst_start = one.burst_start;
+  if constexpr (Motion::degree == 2) b.force = one.force;
+  if constexpr (Motion::degree >= 3) b.given = one.given;
 }
 
 #define KDS_INSTANTIATE(motion) template class Bodies<motion>;

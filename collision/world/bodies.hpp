@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -234,9 +235,26 @@ class Bodies {
   /// Adds a body of another world as it is there. It has not entered.
   BodySlot take_in(const Bodies& from, BodySlot slot);
 
+  /// The bodies have these numbers, in the order of their slots.
+  void number_from(BodySlot first);
+  // Bodies that several processes have, each a part (transfer.cpp).
+  /// Others have the bodies from now on: what is kept is which there are and their ids, what is attached to what, and
+  /// who ignores whom. Until take_back() there are no slots.
+  void lend();
+  /// Of so many bodies that are to come, in slots that are their numbers: as if they had been lent.
+  void lend(std::size_t bodies);
+  bool has_lent(BodyId id) const;
+  /// There are as many slots as before, all empty.
+  void take_back();
+
   /// The whole state as plain data, for snapshots.
   struct Image;
   Image image() const;
+  /// Bodies in this order, without what there is between them. `meshes`: all that they may have.
+  Image image_of(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
+  /// Adds the body in this place of such an image, as it was: with a number, or in an empty slot that is its number.
+  BodySlot put(const Image& image, std::size_t place, BodySlot number);
+  void put_back(const Image& image, std::size_t place, BodySlot slot);
   /// Precondition: the image has been checked.
   void become(const Image& image);
   /// Every mesh of the bodies, once.
@@ -246,6 +264,10 @@ class Bodies {
   [[noreturn]] void refuse(BodyId id) const;
   std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
+  template <class One>
+  void describe(BodySlot slot, One& one, const std::vector<std::shared_ptr<const Mesh>>& meshes) const;
+  template <class One>
+  void become(BodySlot slot, const One& one);
 
   LargeVector<Mover> movers_;
   LargeVector<Motion> motions_;  ///< by slot, where bodies turn
@@ -258,6 +280,7 @@ class Bodies {
   IgnoredPairs ignored_;
   Attachments attachments_;
   std::size_t alive_ = 0;
+  std::size_t lent_ = 0;  ///< slots, while others have the bodies
   bool filters_ = false;
   bool sensors_ = false;
 };

@@ -77,10 +77,16 @@ template <class Motion>
 template <class Archive>
 void Bodies<Motion>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
-  archive.each(bodies, [&](One& one) { body(archive, one); });
+  archive_bodies(archive);
   archive(generations, free, waiting);
   archive.each(ignored, [&](auto& pair) { archive(pair.first, pair.second); });
   archive.each(attached, [&](auto& pair) { archive(pair.first, pair.second); });
+}
+
+template <class Motion>
+template <class Archive>
+void Bodies<Motion>::Image::archive_bodies(Archive& archive) {
+  archive.each(bodies, [&](One& one) { body(archive, one); });
 }
 
 template <class Motion>
@@ -162,7 +168,9 @@ void Bodies<Motion>::Image::check(double now) const {
 #define KDS_INSTANTIATE(motion)                                                                                        \
   KDS_TEMPLATE_PART struct Bodies<motion>::Image;                                                                      \
   template void Bodies<motion>::Image::archive(kds::detail::Writer&, const std::vector<std::shared_ptr<const Mesh>>&); \
-  template void Bodies<motion>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&);
+  template void Bodies<motion>::Image::archive(kds::detail::Reader&, const std::vector<std::shared_ptr<const Mesh>>&); \
+  template void Bodies<motion>::Image::archive_bodies(kds::detail::Writer&);                                           \
+  template void Bodies<motion>::Image::archive_bodies(kds::detail::Reader&);
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -62,6 +62,10 @@ struct Bodies<Motion>::Image {
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
 
+  /// The bodies alone, whose meshes are among `meshes`.
+  template <class Archive>
+  void archive_bodies(Archive& archive);
+
   /// Throws std::runtime_error, naming what is wrong. Precondition: shapes have been loaded, so that meshes are there.
   void check(double now) const;
 

@@ -41,6 +41,9 @@
 
 namespace kds::collision {
 
+template <class Motion>
+struct Parcel;
+
 /// Two bodies that turn at a contact: how they move after it, the impulse on b, and the angular impulses on both.
 template <class Motion>
 struct TurningImpact {
@@ -118,11 +121,12 @@ class Engine final : private RestingListener<BodyMotionType> {
   /// Whether nothing decides later events but descriptions, scripts and progress of bodies, and the pairs that overlap.
   bool is_divisible() const;
   const Scripts<Motion>& scripts() const { return scripts_; }
-  /// Takes in bodies of another world with the same options and clock, whose slots there are their numbers here,
-  /// ascending. Those that have not entered there enter with the next step, or when their motion begins. A sensor and
-  /// the body to which it is attached come together. `known`: the slots of the bodies that were taken in before, by
-  /// their numbers. Returns the slots, in the same order.
-  std::vector<BodySlot> take_in(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> known);
+  /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
+  /// Those that have not entered there enter with the next step, or when their motion begins. A sensor and the body to
+  /// which it is attached come together. `known`: the slots of the bodies that were taken in before, by their numbers.
+  /// `ignored`: by numbers. Returns the slots, in the same order.
+  std::vector<BodySlot> take_in(const Engine& from, std::span<const BodySlot> slots, std::span<const BodySlot> known,
+                                const IgnoredPairs& ignored);
   /// Removes bodies that another world goes on with: nothing is reported.
   void let_go(std::span<const BodySlot> slots);
   /// The overlaps of bodies that have been taken in, by their slots here.
@@ -137,6 +141,24 @@ class Engine final : private RestingListener<BodyMotionType> {
   void note_meeting(BodySlot slot) { resting_.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
   bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
+  // Worlds of which each has a part of the bodies, and that only store them.
+  /// Bodies as plain data. `meshes`: all that there are in the scene.
+  Parcel<Motion> pack(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
+  /// Stores those of a parcel, with their numbers. Returns the slots, in the same order. Those that are attached
+  /// to others are still to be attached.
+  std::vector<BodySlot> store(const Parcel<Motion>& parcel);
+  void attach(BodySlot sensor, BodySlot owner) { bodies_.attach(sensor, owner); }
+  /// Forgets bodies that have been stored.
+  void forget(std::span<const BodySlot> slots);
+  /// Bodies that have been added have these numbers, from the first on.
+  void number_from(BodySlot first) { bodies_.number_from(first); }
+  /// Others store the bodies of this world, all that there is of them, and it forgets them until take_back(); then they
+  /// are put_back() one by one, and it is whole with go_on(). `bodies`: of so many that have been added elsewhere.
+  void lend();
+  void lend(std::size_t bodies) { bodies_.lend(bodies); }
+  void take_back() { bodies_.take_back(); }
+  void put_back(const Parcel<Motion>& parcel);
+
   /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Timers have rung.
   void note_passed(double t);
   /// Forgets all but the bodies, until go_on().
@@ -320,8 +342,9 @@ class Engine final : private RestingListener<BodyMotionType> {
 
   // transfer.cpp
   bool has_begun(BodySlot slot) const { return bodies_.path(slot).start <= clock_.now; }
-  void relate(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> taken,
-              std::span<const BodySlot> known);
+  void relate(const Engine& from, std::span<const BodySlot> slots, std::span<const BodySlot> taken,
+              std::span<const BodySlot> known, const IgnoredPairs& ignored);
+  void resume(const Parcel<Motion>& parcel, std::size_t place, BodySlot slot);
 
   // near.cpp: queries
   template <class Ask, class Meets>

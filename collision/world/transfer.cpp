@@ -17,21 +17,21 @@ bool Engine<Motion>::is_divisible() const {
 }
 
 template <class Motion>
-std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<const BodySlot> numbers,
-                                              std::span<const BodySlot> known) {
+std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<const BodySlot> slots,
+                                              std::span<const BodySlot> known, const IgnoredPairs& ignored) {
   require_editable("World::take_in");
   count_edit();
   return change_or_fail([&] {
     std::vector<BodySlot> taken, entering;
-    taken.reserve(numbers.size()), entering.reserve(numbers.size());
-    for (const BodySlot number : numbers) {
-      const Body& body = from.bodies_[number];
+    taken.reserve(slots.size()), entering.reserve(slots.size());
+    for (const BodySlot there : slots) {
+      const Body& body = from.bodies_[there];
       if (body.shape && has_mesh(body.shape->shape)) make_room_for_meshes();
-      const BodySlot slot = bodies_.take_in(from.bodies_, number);
+      const BodySlot slot = bodies_.take_in(from.bodies_, there);
       volumes_.add(slot, {});
-      scripts_.take_in(slot, from.scripts_, number);
-      tumbling_.take_in(slot, from.tumbling_, number);
-      if (from.resting_.has_met(number)) resting_.note_meeting(slot);
+      scripts_.take_in(slot, from.scripts_, there);
+      tumbling_.take_in(slot, from.tumbling_, there);
+      if (from.resting_.has_met(there)) resting_.note_meeting(slot);
       taken.push_back(slot);
       if (body.entered) {
         entering.push_back(slot);
@@ -39,7 +39,7 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<cons
         bodies_.wait(slot);
       }
     }
-    relate(from, numbers, taken, known);
+    relate(from, slots, taken, known, ignored);
     enter(entering, Begin::moving);
     return taken;
   });
@@ -47,20 +47,19 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<cons
 
 /// Which of the bodies that come are attached to each other, and which never meet each other or one that was here.
 template <class Motion>
-void Engine<Motion>::relate(const Engine& from, std::span<const BodySlot> numbers, std::span<const BodySlot> taken,
-                            std::span<const BodySlot> known) {
+void Engine<Motion>::relate(const Engine& from, std::span<const BodySlot> slots, std::span<const BodySlot> taken,
+                            std::span<const BodySlot> known, const IgnoredPairs& ignored) {
   const auto& attachments = from.bodies_.attachments();
-  const auto& ignored = from.bodies_.ignored();
   if (attachments.empty() && ignored.empty()) return;
   const auto number = [this](BodySlot slot) { return bodies_.number(slot); };
-  const auto slot_among = [&](std::span<const BodySlot> slots, BodySlot of) {
-    const auto found = std::ranges::lower_bound(slots, of, {}, number);
-    return found != slots.end() && number(*found) == of ? *found : no_body;
+  const auto slot_among = [&](std::span<const BodySlot> here, BodySlot of) {
+    const auto found = std::ranges::lower_bound(here, of, {}, number);
+    return found != here.end() && number(*found) == of ? *found : no_body;
   };
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    const BodySlot owner = attachments.owner(numbers[i]);
-    if (owner != no_body) bodies_.attach(taken[i], slot_among(taken, owner));
-    ignored.each_partner(numbers[i], [&](BodySlot partner) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const BodySlot owner = attachments.owner(slots[i]);
+    if (owner != no_body) bodies_.attach(taken[i], slot_among(taken, from.bodies_.number(owner)));
+    ignored.each_partner(number(taken[i]), [&](BodySlot partner) {
       for (const BodySlot other : {slot_among(taken, partner), slot_among(known, partner)}) {
         if (other != no_body) bodies_.ignore(taken[i], other, true);
       }

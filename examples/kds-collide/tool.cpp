@@ -112,11 +112,14 @@ void print_summary(const RunResult& result) {
 /// the others write none but their parts of the events.
 class Simulation {
  public:
-  /// All that can go wrong outside the run goes wrong here: outputs are opened, three.js is read.
+  Simulation(Arguments arguments, kds::collision::Team& team)
+      : arguments_(std::move(arguments)), team_(team), scene_(read()) {}
+
+  /// What else can go wrong outside the run goes wrong here: outputs are opened, three.js is read.
   /// `run`: a number of this run.
-  Simulation(Arguments arguments, kds::collision::Team& team, std::uint64_t run)
-      : arguments_(std::move(arguments)), team_(team), scene_(read()) {
-    const bool writes = team.rank() == 0;
+  void open(std::uint64_t run) {
+    complete(scene_, arguments_.scene, team_);
+    const bool writes = team_.rank() == 0;
     const bool quiet = arguments_.quiet || !writes;
     if (!quiet) {
       for (const std::string& warning : scene_.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
@@ -182,7 +185,8 @@ class Simulation {
 
   Scene read() {
     const std::clock_t start = std::clock();
-    Scene scene = read_scene(arguments_.scene, arguments_.until);
+    Scene scene = team_.count() > 1 ? read_share(arguments_.scene, arguments_.until, team_.rank(), team_.count())
+                                    : read_scene(arguments_.scene, arguments_.until);
     read_seconds_ = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     return scene;
   }
@@ -212,7 +216,7 @@ class Simulation {
   }
 
   void open_parts(std::uint64_t run) {
-    const PartOf of{.scene = fingerprint(arguments_.scene), .bodies = scene_.bodies.size(), .run = run};
+    const PartOf of{.scene = fingerprint(arguments_.scene), .bodies = scene_.size(), .run = run};
     if (arguments_.checkpoint.empty()) {
       parts_.emplace(arguments_.events, of, team_);
     } else {
@@ -319,8 +323,9 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   std::optional<Simulation> simulation;
   Failure failure = first_of(team, attempt(name, arguments, [&] {
                                check(arguments);
-                               simulation.emplace(arguments, team, run);
+                               simulation.emplace(arguments, team);
                              }));
+  if (failure.code == done) failure = first_of(team, attempt(name, arguments, [&] { simulation->open(run); }));
   if (failure.code != done) return end_with(failure, is_first);
   failure = attempt(name, arguments, [&] {
     simulation->run();

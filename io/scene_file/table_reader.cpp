@@ -24,7 +24,7 @@ class Rows {
   Rows(const BodyTable& table, const ReadTable& read) : table_(table), read_(read) {}
 
   [[noreturn]] void fail(std::size_t row, const char* column, const std::string& what) const {
-    throw JsonError(read_.member_path(row, column), what);
+    throw JsonError(read_.member_path(read_.first_row + row, column), what);
   }
   double number(const std::vector<double>& column, const char* name, std::size_t row, double otherwise,
                 std::string (*problem)(double)) const {
@@ -121,13 +121,16 @@ MotionPiece piece_of(const Rows& rows, std::size_t row) {
   return piece;
 }
 
-BodyTable read_file(const JsonNode& node, const std::filesystem::path& folder, const std::string& file) {
+/// What read(path) gives of the file that the node names.
+template <class Read>
+auto from_file(const JsonNode& node, const std::filesystem::path& folder, const Read& read) {
+  const std::string file = node["file"].string();
   try {
-    return read_body_table(folder / file);
+    return read(folder / file);
   } catch (const BodyTableError& error) {
-    node.fail(file + ": " + error.what());
+    node["file"].fail(file + ": " + error.what());
   } catch (const std::bad_alloc&) {
-    node.fail(file + ": has more than fits into memory");
+    node["file"].fail(file + ": has more than fits into memory");
   }
 }
 
@@ -146,24 +149,38 @@ std::string ReadTable::member_path(std::size_t row, const std::string& member) c
   return column.empty() ? of_row : of_row + "." + column;
 }
 
+std::size_t rows_of_table(const JsonNode& node, const std::filesystem::path& folder) {
+  return from_file(node, folder, [](const auto& path) { return body_table_rows(path); });
+}
+
 ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, const SurfaceNumbers& of_scene,
-                     Scene& scene) {
+                     const TableRows& rows_wanted, Scene& scene) {
   node.object({"file", "prefix", "shape", "shapes"});
   ReadTable read;
   read.path = node.path();
   read.file = node["file"].string();
   read.prefix = node["prefix"].string();
   read.first = scene.bodies.size();
-  const BodyTable table = read_file(node["file"], folder, read.file);
-  read.rows = table.rows();
+  BodyTable table;
+  if (rows_wanted.wanted) {
+    read.rows = rows_of_table(node, folder);
+    read.first_row = rows_wanted.first, read.rows_read = *rows_wanted.wanted;
+    // One at least, since a column without rows counts as one that is not there.
+    table = from_file(node, folder, [&](const auto& path) {
+      return read_body_table(path, std::min(read.first_row, read.rows - 1), std::max<std::size_t>(1, read.rows_read));
+    });
+  } else {
+    table = from_file(node, folder, [](const auto& path) { return read_body_table(path); });
+    read.rows = read.rows_read = table.rows();
+  }
   read.has_friction =
       !table.friction.empty() || !table.tangential_restitution.empty() || !table.rolling_friction.empty();
   const Shapes shapes(node, table, scene);
   const Rows rows(table, read);
-  scene.bodies.reserve(scene.bodies.size() + read.rows);
-  for (std::size_t row = 0; row < read.rows; ++row) {
+  scene.bodies.reserve(scene.bodies.size() + read.rows_read);
+  for (std::size_t row = 0; row < read.rows_read; ++row) {
     SceneBody& body = scene.bodies.emplace_back();
-    body.name = read.prefix + std::to_string(row);
+    body.name = read.prefix + std::to_string(read.first_row + row);
     body.shape = shapes.of(rows, row);
     body.motion = {piece_of(rows, row)};
     body.orientation = body.motion.front().orientation;

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -54,6 +55,17 @@ const double change_bytes = bytes_of(MotionChange<Motion>{});
 const double news_bytes = bytes_of(BodyNews<Motion>{});
 const double nearest_bytes = bytes_of(NearestStranger{});  // of a domain, to each that is near it
 const double event_bytes = bytes_of(DomainEvent{});
+/// Of a ball that another process is to know, all that there is of it.
+double ball_bytes() {
+  Parcel<Motion> parcel;
+  const double none = bytes_of(parcel);
+  auto& ball = parcel.bodies.bodies.emplace_back();
+  ball.alive = true, ball.placed = place(Sphere{0.5}, Eigen::Quaterniond::Identity());
+  parcel.numbers.push_back(0), parcel.to_come.emplace_back(), parcel.met.push_back(0);
+  return bytes_of(parcel) - none;
+}
+/// Memory for a ball that a process stores, and in the world of a domain that knows it.
+constexpr double stored_bytes = 210, world_bytes = 790;
 // In a step there is one exchange, which ends with a barrier, and a combination, of sums and of maxima; at the end of a
 // window another exchange.
 constexpr double collectives_of_step = 3, collectives_of_window = 1;
@@ -86,12 +98,14 @@ Predicted predicted(std::size_t domains, double halo_over_side) {
 }
 
 /// Bytes that a process sends in a step, if it runs one domain. `near`: domains to which it writes; `copies`: of its
-/// bodies, in other domains; `changes`: of the motion of a body, in a step; `steps`: of a window.
-double predicted_bytes(std::size_t processes, double near, double copies, double changes, double steps, double events) {
+/// bodies, in other domains; `changes`: of the motion of a body, in a step; `come`: of a copy, how often it is made in
+/// a step; `steps`: of a window.
+double predicted_bytes(std::size_t processes, double near, double copies, double changes, double come, double steps,
+                       double events) {
   const double p = static_cast<double>(processes);
   const double changed_in_window = 1 - std::exp(-changes * steps);
   return copies * changes * change_bytes + near * nearest_bytes + events * event_bytes * (p - 1) / p +
-         copies * changed_in_window * news_bytes / steps;
+         copies * changed_in_window * news_bytes / steps + copies * come * ball_bytes();
 }
 
 /// Messages that it sends: to the domains near it; and, if they are sent, of its events.
@@ -105,9 +119,18 @@ struct Counts {
   double messages = 0, bytes = 0;  ///< sent by all processes
 };
 
-/// Whether a process runs each of so many domains: each stores all bodies.
+/// Whether a process runs each of so many domains.
 bool by_processes(std::size_t bodies, std::size_t domains) {
   return domains <= 8 || (domains == 64 && bodies <= 30'000);
+}
+
+/// What has been counted since.
+ParallelCounters difference(const ParallelCounters& counters, const ParallelCounters& before) {
+  using Numbers = std::array<std::uint64_t, sizeof(ParallelCounters) / sizeof(std::uint64_t)>;
+  Numbers numbers = std::bit_cast<Numbers>(counters);
+  const Numbers of_before = std::bit_cast<Numbers>(before);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] -= of_before[i];
+  return std::bit_cast<ParallelCounters>(numbers);
 }
 
 /// Runs a gas in domains.
@@ -118,11 +141,14 @@ Counts run_divided(const ElasticGas& gas, std::size_t domains, double end) {
     ParallelListener listener;
     ParallelWorld<1> world(gas.options, {.threads = 1, .domains = domains}, &listener, processes);
     for (const auto& ball : gas.bodies) world.add_body(ball);
+    world.advance_to(0);  // All bodies have been sent to where they are known.
+    const ParallelCounters before = world.counters();
+    const MessageCounters sent = world.messages();
     world.advance_to(end);
     const std::scoped_lock lock(mutex);
-    counts.of = world.counters();
-    counts.messages += static_cast<double>(world.messages().letters);
-    counts.bytes += static_cast<double>(world.messages().bytes);
+    counts.of = difference(world.counters(), before);
+    counts.messages += static_cast<double>(world.messages().letters - sent.letters);
+    counts.bytes += static_cast<double>(world.messages().bytes - sent.bytes);
   };
   if (by_processes(gas.bodies.size(), domains)) {
     kds::collision::tests::ThreadProcesses(domains).run([&](Processes& processes) { run(&processes); });
@@ -159,6 +185,7 @@ double merge_seconds(std::size_t domains) {
 struct Measured {
   double contact_seconds = 0;        ///< in one world
   double contacts = 0, changes = 0;  ///< a body and step
+  double come = 0;                   ///< a copy and step: how often it is made
   double steps = 0;                  ///< of a window
   double halo = 0;                   ///< in mean distances of neighbours
 };
@@ -187,11 +214,12 @@ Measured measure(std::ofstream& csv, std::size_t bodies, double packing) {
     const double efficiency = ratio(events, k * static_cast<double>(c.events_of_busiest));
     measured.contacts = static_cast<double>(c.contacts) / n / steps;
     measured.changes = static_cast<double>(2 * c.contacts + c.wall_contacts) / n / steps;
+    measured.come = static_cast<double>(c.copies_made) / static_cast<double>(c.bodies_known - c.bodies_owned);
     measured.steps = steps / static_cast<double>(c.windows);
     const Predicted p = predicted(domains, measured.halo / std::cbrt(n));
     const double messages_predicted = predicted_messages(domains, p.near, measured.steps, true);
-    const double bytes_predicted =
-        predicted_bytes(domains, p.near, (p.known - 1) * n / k, measured.changes, measured.steps, events / steps / k);
+    const double bytes_predicted = predicted_bytes(domains, p.near, (p.known - 1) * n / k, measured.changes,
+                                                   measured.come, measured.steps, events / steps / k);
     tell(csv, "%zu,%g,%zu,%llu,%.2f,%.3f,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.1f,%.1f,%.0f,%.0f\n", bodies, packing, domains,
          static_cast<unsigned long long>(c.windows), measured.steps, measured.contacts,
          static_cast<unsigned long long>(c.windows_failed), known, p.known,
@@ -212,7 +240,7 @@ void predict(std::ofstream& csv, double packing, const Measured& from, double me
       const Predicted counts = predicted(processes, from.halo / std::cbrt(n));
       const double events = own * from.contacts;
       const double bytes =
-          predicted_bytes(processes, counts.near, (counts.known - 1) * own, from.changes, from.steps, 0);
+          predicted_bytes(processes, counts.near, (counts.known - 1) * own, from.changes, from.come, from.steps, 0);
       const double rounds = std::log2(p) * (collectives_of_step + collectives_of_window / from.steps);
       const double sent = predicted_messages(processes, counts.near, from.steps, false);
       const double messages = (sent + rounds) * message_seconds;
@@ -222,7 +250,7 @@ void predict(std::ofstream& csv, double packing, const Measured& from, double me
       const double alone = p * events * from.contact_seconds;
       tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.1f,%.5f,%.2f\n", packing, n, processes, 1 / counts.busiest,
            alone / step, alone / (step + log), sent + rounds, bytes / 1e6, (step - computed) / step,
-           (300 * n + 790 * own * counts.busiest) / 1e9);
+           (stored_bytes + world_bytes) * own * counts.busiest / 1e9);
     }
   }
 }
@@ -245,8 +273,8 @@ int main(int argc, char** argv) {
       for (const std::size_t bodies : sizes) measured[i] = measure(csv, bodies, packings[i]);
     }
     const double merge = merge_seconds(64);
-    std::printf("bytes: a change of motion %.0f, news of a body %.0f, a distance %.0f, an event %.0f\n", change_bytes,
-                news_bytes, nearest_bytes, event_bytes);
+    std::printf("bytes: a change of motion %.0f, news of a body %.0f, a distance %.0f, an event %.0f, a ball %.0f\n",
+                change_bytes, news_bytes, nearest_bytes, event_bytes, ball_bytes());
     std::printf("merging 64 logs: %.0f ns an event; a contact in one world: %.0f ns at 0.25, %.0f ns at 0.01\n",
                 merge * 1e9, measured[0].contact_seconds * 1e9, measured[1].contact_seconds * 1e9);
     std::ofstream table = kds::benchmarks::open_csv(folder, "processes_predicted.csv");

@@ -1,10 +1,13 @@
 #include "collision/parallel/partition.hpp"
+#include "tests/collision/parallel/thread_processes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace kds::collision::test_partition {
@@ -25,6 +28,11 @@ std::vector<Vector3d> places(Random& random, std::size_t n, bool coarse) {
   return result;
 }
 
+Partition partition_of(std::vector<Vector3d> places, std::size_t cells) {
+  Team alone(nullptr);
+  return Partition(std::move(places), cells, alone);
+}
+
 bool contains(const StaticBox& cell, const Vector3d& place) {
   return (cell.min <= place.array()).all() && (place.array() < cell.max).all();
 }
@@ -37,7 +45,7 @@ TEST_CASE("Partition: each place is in one cell, the one that is named", "[paral
     const bool coarse = random.one_in(2);
     const std::size_t wanted = 1 + random.below(20);
     const auto of = places(random, 1 + random.below(400), coarse);
-    const Partition partition(of, wanted);
+    const Partition partition = partition_of(of, wanted);
     INFO("seed " << seed << ", " << of.size() << " places, " << wanted << " cells");
     REQUIRE(partition.size() >= 1);
     REQUIRE(partition.size() <= wanted);
@@ -66,7 +74,7 @@ TEST_CASE("Partition: the cells near a place or a box, without a look at all", "
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
     const bool coarse = random.one_in(2);
-    const Partition partition(places(random, 1 + random.below(400), coarse), 1 + random.below(200));
+    const Partition partition = partition_of(places(random, 1 + random.below(400), coarse), 1 + random.below(200));
     INFO("seed " << seed << ", " << partition.size() << " cells");
     for (const Vector3d& place : places(random, 50, coarse)) {
       // Coarse numbers are often as far away as this.
@@ -91,11 +99,38 @@ TEST_CASE("Partition: the cells near a place or a box, without a look at all", "
   }
 }
 
+TEST_CASE("Partition: processes that have some places each find the cells that one has of all", "[parallel]") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    const bool coarse = random.one_in(3);
+    const std::size_t wanted = 1 + random.below(40), processes = 1 + random.below(5);
+    const auto all_places = places(random, 1 + random.below(400), coarse);
+    const Partition right = partition_of(all_places, wanted);
+    // The first has none, as a rule.
+    std::vector<std::vector<Vector3d>> parts(processes);
+    for (const Vector3d& place : all_places) parts[processes - 1 - random.below((processes + 1) / 2)].push_back(place);
+    INFO("seed " << seed << ", " << right.size() << " cells, " << processes << " processes");
+    std::vector<std::vector<StaticBox>> found(processes);
+    tests::ThreadProcesses(processes).run([&](Processes& others) {
+      Team team(&others);
+      const Partition partition(parts[others.rank()], wanted, team);
+      for (std::size_t i = 0; i < partition.size(); ++i) found[others.rank()].push_back(partition.cell(i));
+    });
+    for (const auto& cells : found) {
+      REQUIRE(cells.size() == right.size());
+      for (std::size_t i = 0; i < cells.size(); ++i) {
+        REQUIRE((cells[i].min == right.cell(i).min).all());
+        REQUIRE((cells[i].max == right.cell(i).max).all());
+      }
+    }
+  }
+}
+
 TEST_CASE("Partition: places that coincide are not divided", "[parallel]") {
-  CHECK(Partition(std::vector<Vector3d>(10, Vector3d(1, 2, 3)), 8).size() == 1);
+  CHECK(partition_of(std::vector<Vector3d>(10, Vector3d(1, 2, 3)), 8).size() == 1);
   std::vector<Vector3d> two(9, Vector3d::Zero());
   two.push_back({0, 1, 0});
-  const Partition partition(two, 8);
+  const Partition partition = partition_of(two, 8);
   REQUIRE(partition.size() == 2);
   CHECK(partition.cell_of({0, 0, 0}) != partition.cell_of({0, 1, 0}));
 }

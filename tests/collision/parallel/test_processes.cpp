@@ -293,6 +293,11 @@ TEST_CASE("Processes: motions of bodies of other processes are refused", "[paral
     for (const auto& body : one.scene.bodies) divided.add_body(body);
     divided.advance_to(0.5);
     if (divided.domains() != 2) throw std::runtime_error("it is not divided");
+    // Not even where a process does not store it is a body taken for one that is not there.
+    const std::string nowhere = message([&] { divided.motion(1000); });
+    if (nowhere != "World: there is no body 1000 (generation 0 of slot 1000): it has never been there") {
+      throw std::runtime_error(nowhere);
+    }
     for (BodyId id = 0; id < one.scene.bodies.size(); ++id) {
       const std::string what = message([&] { divided.motion(id); });
       if (what == "ParallelWorld::motion: the body is owned by another process; whole() has all") {

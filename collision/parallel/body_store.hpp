@@ -1,0 +1,107 @@
+// The bodies that a process stores while the scene is divided.
+#pragma once
+
+#include "collision/parallel/slots_by_number.hpp"
+#include "collision/world.hpp"
+#include "collision/world/engine.hpp"
+#include "collision/world/parcel.hpp"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace kds::collision {
+
+namespace detail {
+
+/// The engine behind a world.
+template <class Motion>
+struct EngineOf {
+  static Engine<Motion>& of(BasicWorld<Motion>& world) { return *world.engine_; }
+};
+
+}  // namespace detail
+
+/// Some bodies of a scene, in a world that is not run.
+template <class Motion>
+struct BodyPart {
+  explicit BodyPart(const WorldOptions& options) : world(options) {}
+  Engine<Motion>& engine() { return detail::EngineOf<Motion>::of(world); }
+
+  BasicWorld<Motion> world;  ///< whose slots are not those of the scene
+  SlotsByNumber slots{};
+};
+
+/// The bodies that a process stores, each as it was at the end of the last step that was committed. A process that is
+/// alone stores all of them, where they are: in the world of the whole scene, whose slots are their numbers. Several
+/// have a part of them each; the whole world has lent its bodies then, and knows what there is between them.
+template <class Motion>
+class BodyStore {
+ public:
+  /// `whole` must outlive this.
+  BodyStore(const WorldOptions& options, Engine<Motion>& whole) : options_(options), whole_(whole) {}
+
+  bool is_part() const { return part_ != nullptr; }
+  Engine<Motion>& whole() { return whole_; }
+  Engine<Motion>& engine() { return part_ ? part_->engine() : whole_; }
+  const Engine<Motion>& engine() const { return part_ ? part_->engine() : whole_; }
+  const Bodies<Motion>& bodies() const { return engine().bodies(); }
+  /// By numbers; they ignore each other.
+  const IgnoredPairs& ignored() const { return whole_.bodies().ignored(); }
+  /// Null where slots are numbers.
+  const SlotsByNumber* slots() const { return part_ ? &part_->slots : nullptr; }
+  /// The slot of a body; `no_body` if it is not stored here.
+  BodySlot find(BodySlot number) const { return part_ ? part_->slots.find(number) : number; }
+
+  /// From now on this stores a part, of no bodies yet. Returns the part that it has stored before, if it has.
+  std::unique_ptr<BodyPart<Motion>> begin_part(double now) {
+    WorldOptions options = options_;
+    options.start_time = now, options.threads = 1;
+    return std::exchange(part_, std::make_unique<BodyPart<Motion>>(options));
+  }
+  /// The bodies that have been added to the part's world have these numbers, in the order of their slots.
+  void number_from(BodySlot first) {
+    engine().number_from(first);
+    for (BodySlot slot = 0; slot < bodies().slots(); ++slot) part_->slots.add(first + slot, slot);
+  }
+  /// Adds those of a parcel that are not here. Precondition: it stores a part.
+  void add(const Parcel<Motion>& parcel) {
+    const std::vector<BodySlot> slots = engine().store(parcel);
+    for (std::size_t i = 0; i < slots.size(); ++i) part_->slots.add(parcel.numbers[i], slots[i]);
+    const Attachments& attachments = whole_.bodies().attachments();
+    if (attachments.empty()) return;
+    for (const BodySlot number : parcel.numbers) {
+      const BodySlot owner = attachments.owner(number);
+      if (owner != no_body) attach(number, owner);
+      for (const BodySlot sensor : attachments.sensors(number)) attach(sensor, number);
+    }
+  }
+  /// Forgets bodies, by their numbers. Precondition: it stores a part that has them.
+  void forget(std::span<const BodySlot> numbers) {
+    std::vector<BodySlot> slots;
+    for (const BodySlot number : numbers) slots.push_back(find(number)), part_->slots.remove(number);
+    engine().forget(slots);
+  }
+  /// The whole world has all bodies again.
+  void end_part() { part_ = nullptr; }
+
+  /// As Engine::note_passed().
+  void note_passed(double t) {
+    whole_.note_passed(t);
+    if (part_) part_->engine().note_passed(t);
+  }
+
+ private:
+  /// Whichever of the two comes first.
+  void attach(BodySlot sensor, BodySlot owner) {
+    const BodySlot sensors_slot = find(sensor), owners_slot = find(owner);
+    if (sensors_slot == no_body || owners_slot == no_body) return;
+    if (bodies().attachments().owner(sensors_slot) == no_body) engine().attach(sensors_slot, owners_slot);
+  }
+
+  const WorldOptions options_;
+  Engine<Motion>& whole_;
+  std::unique_ptr<BodyPart<Motion>> part_;
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,34 @@
+// Bodies on their way from one process to another.
+#pragma once
+
+#include "collision/world/bodies_image.hpp"
+#include "collision/world/turning/tumbling.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace kds::collision {
+
+/// All that there is of some bodies, but for what there is between them: who is attached to whom, and ignores whom.
+/// Meshes do not travel: who reads a parcel has the same list of them as who has written it, and puts it into
+/// `bodies.meshes` before.
+template <class Motion>
+struct Parcel {
+  std::vector<BodySlot> numbers{};
+  typename Bodies<Motion>::Image bodies{};  ///< as image_of()
+  // In the same order:
+  std::vector<std::vector<Motion>> to_come{};  ///< pieces of motion, the last first
+  std::vector<typename Tumbling<Motion>::Progress> turning{};
+  std::vector<char> met{};  ///< whether it has met a body that is not fixed
+
+  bool empty() const { return numbers.empty(); }
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(numbers);
+    bodies.archive_bodies(archive);
+    archive(to_come, met);
+    if constexpr (turns<Motion>) archive(turning);
+  }
+};
+
+}  // namespace kds::collision
