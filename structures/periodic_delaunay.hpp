@@ -25,7 +25,7 @@ namespace kds::structures {
 /// points on a flat torus, or in a rectangle whose opposite sides are one. Points may be anywhere, and move out of the
 /// rectangle: of a point only the differences to others count, and these modulo the periods.
 ///
-///     Kinetic<PeriodicDelaunayRule<Path>> triangulation(points, now, {{2, 1}});       // 2 long, 1 high
+///     Kinetic triangulation(points, now, PeriodicDelaunayRule<Path>({2, 1}));         // 2 long, 1 high
 ///     triangulation.rule().mesh().corners(3 * t)                                      // of triangle t, with offsets
 ///
 /// Any number of points will do, one too: then edges join a point to its own copies, or two points more than once (see
@@ -55,8 +55,10 @@ class PeriodicDelaunayRule {
   using Copy = certificates::PathCopy<Path>;
   static constexpr const char* name = "PeriodicDelaunay";
 
+  /// Both periods are 1.
+  PeriodicDelaunayRule() : PeriodicDelaunayRule(Periods{1, 1}) {}
   /// Periods along x and y, in units of length.
-  explicit PeriodicDelaunayRule(const Periods& periods = {1, 1}) : periods_(periods) {
+  explicit PeriodicDelaunayRule(const Periods& periods) : periods_(periods) {
     for (const double period : periods) {
       if (period > 0 && period <= certificates::longest_period) continue;
       throw std::invalid_argument("PeriodicDelaunay: a period must be > 0 and at most 2^900, not " +

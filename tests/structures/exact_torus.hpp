@@ -110,8 +110,8 @@ class ExactTorus {
   std::array<double, 2> about_from(const Copy& a, const Copy& b) const {
     std::array<double, 2> result{};
     for (const std::size_t d : {std::size_t{0}, std::size_t{1}}) {
-      result[d] = oracle::approximate(
-          places_.at(b.id)[d] - places_.at(a.id)[d] + oracle::Rational(offset(b, d) - offset(a, d)) * periods_[d]);
+      result[d] = oracle::approximate(places_.at(b.id)[d] - places_.at(a.id)[d] +
+                                      oracle::Rational(offset(b, d) - offset(a, d)) * periods_[d]);
     }
     return result;
   }
