@@ -25,7 +25,8 @@ namespace kds::structures {
 /// points on a flat torus, or in a rectangle whose opposite sides are one. Points may be anywhere, and move out of the
 /// rectangle: of a point only the differences to others count, and these modulo the periods.
 ///
-///     Kinetic triangulation(points, now, PeriodicDelaunayRule<Path>({2, 1}));         // 2 long, 1 high
+///     using Rule = PeriodicDelaunayRule<Path>;
+///     Kinetic<Rule> triangulation(points, now, Rule({2, 1}));                         // 2 long, 1 high
 ///     triangulation.rule().mesh().corners(3 * t)                                      // of triangle t, with offsets
 ///
 /// Any number of points will do, one too: then edges join a point to its own copies, or two points more than once (see
@@ -91,8 +92,8 @@ class PeriodicDelaunayRule {
   };
   Edges edges() const { return {mesh_}; }
   /// Certificate that an edge is not longer than another.
-  certificates::DistanceOrder<Copy> length_order(PeriodicMesh::Number edge, PeriodicMesh::Number other,
-                                                 const MovingSet<Path>& x) const {
+  using LengthOrder = certificates::DistanceOrder<Copy>;
+  LengthOrder length_order(PeriodicMesh::Number edge, PeriodicMesh::Number other, const MovingSet<Path>& x) const {
     const PeriodicPredicates<Path> is{x, periods_};
     const auto [a, b, beside] = mesh_.corners(mesh_.half_edge(edge));
     const auto [c, d, beside_other] = mesh_.corners(mesh_.half_edge(other));

@@ -19,10 +19,15 @@ using certificates::PeriodOffset;
 
 /// One of the copies of a vertex.
 struct VertexCopy {
-  Id id;
-  PeriodOffset offset;
+  Id id = nobody;
+  PeriodOffset offset{};
 
   friend bool operator==(const VertexCopy&, const VertexCopy&) = default;
+
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(id, offset);
+  }
 };
 
 /// A triangulation of the whole plane that is the same in each period, stored once. It is a TriangleMesh without a

@@ -79,15 +79,18 @@ class ExactTorus {
     const auto u = from(a, b), v = from(c, d);
     return sign(u[0] * u[0] + u[1] * u[1] - (v[0] * v[0] + v[1] * v[1]));
   }
-  /// The copies of a point within about a diagonal of another.
-  std::vector<Copy> copies_near(Id id, Id other) const {
-    std::vector<Copy> result;
-    for (int i = -reach_[0]; i <= reach_[0]; ++i) {
-      for (int j = -reach_[1]; j <= reach_[1]; ++j) {
-        result.push_back({id, copies_between(id, other, 0) + i, copies_between(id, other, 1) + j});
+  /// The copy of a point that is the nearest to another: along each axis it is not farther than half a period, so it is
+  /// the one that is found by rounding, or next to that.
+  Copy nearest_copy(Id id, Id other) const {
+    const Copy to{other, 0, 0}, rounded{id, copies_between(id, other, 0), copies_between(id, other, 1)};
+    Copy nearest = rounded;
+    for (int i = -1; i <= 1; ++i) {
+      for (int j = -1; j <= 1; ++j) {
+        const Copy copy{id, rounded.along + i, rounded.up + j};
+        if (compare_distances(copy, to, nearest, to) < 0) nearest = copy;
       }
     }
-    return result;
+    return nearest;
   }
 
  private:
