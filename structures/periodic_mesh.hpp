@@ -38,7 +38,7 @@ struct VertexCopy {
 /// Law: around a triangle offsets add up to zero; those of twins are opposite. Edges may lead from a vertex to itself,
 /// several may join the same two vertices, and two triangles may share two or three edges: with one vertex there are
 /// two triangles and three edges. Papers: [Bobenko07], triangulations of flat surfaces in this sense. Differs from
-/// [Caroli09], who keep nine copies of each point until there is no such edge.
+/// [Caroli09], who keep several copies of each point as long as there are such edges.
 ///
 /// Edges are numbered: three for each vertex. A flip gives the new edge the number of the old one.
 ///
