@@ -16,8 +16,8 @@ namespace kds::certificates {
 template <class Path, std::size_t Dimension>
 struct DirectionOrder {
   static constexpr int degree = Path::degree;
-  const Path& lower;
-  const Path& upper;
+  Held<Path> lower;
+  Held<Path> upper;
   const std::array<double, Dimension>& direction;
 
   DirectionOrder(Lasting<Path> low, Lasting<Path> high, Lasting<std::array<double, Dimension>> along_which)
@@ -31,7 +31,7 @@ struct DirectionOrder {
   }
 
   bool is_negative_of(const DirectionOrder& other) const {
-    return &lower == &other.upper && &upper == &other.lower && &direction == &other.direction;
+    return is_same_thing(lower, other.upper) && is_same_thing(upper, other.lower) && &direction == &other.direction;
   }
 
   bool vanishes() const {

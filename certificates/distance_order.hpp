@@ -13,10 +13,10 @@ namespace kds::certificates {
 template <class Path>
 struct DistanceOrder {
   static constexpr int degree = 2 * Path::degree;
-  const Path& a;
-  const Path& b;
-  const Path& c;
-  const Path& d;
+  Held<Path> a;
+  Held<Path> b;
+  Held<Path> c;
+  Held<Path> d;
 
   DistanceOrder(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth)
       : a(first), b(second), c(third), d(fourth) {}
@@ -41,7 +41,8 @@ struct DistanceOrder {
   bool vanishes() const requires(!requires { Path::sampled; }) { return (a == c && b == d) || (a == d && b == c); }
 
   bool is_negative_of(const DistanceOrder& other) const {
-    return &a == &other.c && &b == &other.d && &c == &other.a && &d == &other.b;
+    return is_same_thing(a, other.c) && is_same_thing(b, other.d) && is_same_thing(c, other.a) &&
+           is_same_thing(d, other.b);
   }
 };
 

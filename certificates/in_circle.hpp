@@ -18,10 +18,10 @@ namespace kds::certificates {
 template <class Path>
 struct InCircle {
   static constexpr int degree = 4 * Path::degree;
-  const Path& a;
-  const Path& b;
-  const Path& c;
-  const Path& d;
+  Held<Path> a;
+  Held<Path> b;
+  Held<Path> c;
+  Held<Path> d;
 
   InCircle(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth)
       : a(first), b(second), c(third), d(fourth) {}

@@ -16,9 +16,9 @@ namespace kds::certificates {
 template <class Path>
 struct Orientation {
   static constexpr int degree = 2 * Path::degree;
-  const Path& a;
-  const Path& b;
-  const Path& c;
+  Held<Path> a;
+  Held<Path> b;
+  Held<Path> c;
 
   Orientation(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third) : a(first), b(second), c(third) {}
 

@@ -17,8 +17,8 @@ namespace kds {
 /// x(t) = c0 + c1 (t - start) + c2 (t - start)^2 + ...: [Coming06] Equation 1, written about its own start.
 ///
 /// Law (epochs): a motion is never evaluated with a large absolute t, so a clock at 1e9 is as good as one at 0. The
-/// coefficients and the start are taken as exact; c2 is half the acceleration. Degrees above 10 are refused at compile
-/// time by compensated_value(), which evaluates motions in double-double, and so by most certificates.
+/// coefficients and the start are taken as exact; c2 is half the acceleration. The degree of a certificate of motions,
+/// and so that of a motion, is limited by first_crossing(): 31.
 template <int Degree>
 struct Motion {
   static constexpr int degree = Degree;

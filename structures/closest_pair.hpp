@@ -19,10 +19,11 @@ namespace kds::structures {
 ///     Kinetic<DelaunayRule<Path>> triangulation(points, now);
 ///     Kinetic<ClosestPairRule<Path>> closest(triangulation, now);
 ///
-/// The two are joined by an edge of that [Shamos75], so a tournament of its edges by their lengths finds them, whose
-/// certificates say that the loser of a match is not shorter than its winner. Papers: [Guibas91]; [Basch97], which
-/// differs: it finds candidates by sorted lists and cones of 60 degrees, with certificates of degree 1 and 2 in place
-/// of 4 and 2.
+/// or on a periodic one, ClosestPairRule<Path, PeriodicDelaunayRule<Path>>, in which two points are as far from each
+/// other as their copies are. The two are joined by an edge of that [Shamos75], so a tournament of its edges by their
+/// lengths finds them, whose certificates say that the loser of a match is not shorter than its winner. Papers:
+/// [Guibas91]; [Basch97], which differs: it finds candidates by sorted lists and cones of 60 degrees, with certificates
+/// of degree 1 and 2 in place of 4 and 2.
 ///
 /// Cost, besides that of the triangulation: O(log n) certificates for an event and for a flip, which is a change of two
 /// edges (responsive); 3 n matches (compact); locality is that of the triangulation, times log n. External events are
@@ -30,10 +31,9 @@ namespace kds::structures {
 ///
 /// Points that stay in one place together are a closest pair. While three or more points all stay on one line nothing
 /// is known (DelaunayRule::flat()).
-template <class Path>
-class ClosestPairRule
-    : public ChampionRule<ClosestPairRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>> {
-  using Base = ChampionRule<ClosestPairRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>>;
+template <class Path, class Delaunay = DelaunayRule<Path>>
+class ClosestPairRule : public ChampionRule<ClosestPairRule<Path, Delaunay>, Delaunay, typename Delaunay::LengthOrder> {
+  using Base = ChampionRule<ClosestPairRule<Path, Delaunay>, Delaunay, typename Delaunay::LengthOrder>;
 
  public:
   static constexpr const char* name = "ClosestPair";
@@ -43,16 +43,15 @@ class ClosestPairRule
   /// The pair, the lower id first; none if there are fewer than two points, or if there are three or more that all stay
   /// on one line. If several pairs stay equally close it is any of them.
   const Pair& pair() const { return this->answer(); }
-  const DelaunayRule<Path>& delaunay() const { return this->inner(); }
+  const Delaunay& delaunay() const { return this->inner(); }
 
   // What ChampionRule asks for.
   Edge candidate(const EdgeChange& change) const { return change.edge; }
-  bool takes_part(Edge edge) const { return delaunay().edges().contains(edge); }
+  /// An edge from a point to its own copy does not.
+  bool takes_part(Edge edge) const { return delaunay().edges().contains(edge) && ids(edge)[0] != ids(edge)[1]; }
   std::array<Id, 2> ids(Edge edge) const { return delaunay().edges().ends(edge); }
-  certificates::DistanceOrder<Path> better(Edge edge, Edge other, const MovingSet<Path>& x) const {
-    const auto [a, b] = ids(edge);
-    const auto [c, d] = ids(other);
-    return {x[a], x[b], x[c], x[d]};
+  typename Delaunay::LengthOrder better(Edge edge, Edge other, const MovingSet<Path>& x) const {
+    return delaunay().length_order(edge, other, x);
   }
   /// O(1), but O(n) while points share a vertex or the triangulation is flat().
   Pair find_answer() const;
@@ -79,8 +78,8 @@ class ClosestPairRule
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <class Path>
-auto ClosestPairRule<Path>::find_answer() const -> Pair {
+template <class Path, class Delaunay>
+auto ClosestPairRule<Path, Delaunay>::find_answer() const -> Pair {
   if (delaunay().has_shared_vertices()) {
     for (Id id = 0; id < present_.size(); ++id) {
       const Id vertex = present_[id] ? delaunay().vertex(id) : id;

@@ -18,9 +18,10 @@
 
 namespace kds::structures {
 
-/// Keeps for each point of the plane another that is nearest to it. It stands on a Delaunay triangulation, in which the
-/// two are joined by an edge [Shamos75]: so each point compares the edges that it has, and a certificate says of each
-/// other edge that it is not shorter than the one chosen.
+/// Keeps for each point of the plane another that is nearest to it; or, as NearestNeighboursRule<Path,
+/// PeriodicDelaunayRule<Path>>, of a plane that repeats itself, another of which a copy is. It stands on a Delaunay
+/// triangulation, in which the two are joined by an edge [Shamos75]: so each point compares the edges that it has, and
+/// a certificate says of each other edge that it is not shorter than the one chosen.
 ///
 /// Cost, besides that of the triangulation: for a point of k edges, k - 1 certificates for an event of its own, and for
 /// each of its edges that comes or goes (responsive on average: k is 6 then); fewer than 6 n certificates (compact); a
@@ -28,8 +29,8 @@ namespace kds::structures {
 /// flip may be.
 ///
 /// While three or more points all stay on one line nothing is known (DelaunayRule::flat).
-template <class Path>
-class NearestNeighboursRule : public StandsOn<DelaunayRule<Path>> {
+template <class Path, class Delaunay = DelaunayRule<Path>>
+class NearestNeighboursRule : public StandsOn<Delaunay> {
  public:
   static constexpr const char* name = "NearestNeighbours";
   using Element = Path;
@@ -39,7 +40,7 @@ class NearestNeighboursRule : public StandsOn<DelaunayRule<Path>> {
   /// share a vertex, or where there is no triangle.
   std::optional<Id> nearest(Id id) const;
 
-  std::optional<certificates::DistanceOrder<Path>> certificate(Slot slot, const MovingSet<Path>& x) const {
+  std::optional<typename Delaunay::LengthOrder> certificate(Slot slot, const MovingSet<Path>& x) const {
     if (!listed(slot) || chosen_[from(slot)] == slot) return std::nullopt;
     return order(chosen_[from(slot)], slot, x);
   }
@@ -72,9 +73,13 @@ class NearestNeighboursRule : public StandsOn<DelaunayRule<Path>> {
   bool listed(Slot slot) const { return slot / 2 < ends_.size() && ends_[slot / 2][0] != nobody; }
   Id from(Slot slot) const { return ends_[slot / 2][slot % 2]; }
   Id to(Slot slot) const { return ends_[slot / 2][1 - slot % 2]; }
-  certificates::DistanceOrder<Path> order(Slot nearer, Slot farther, const MovingSet<Path>& x) const {
-    const Path& at = x[from(nearer)];
-    return {at, x[to(nearer)], at, x[to(farther)]};
+  typename Delaunay::LengthOrder order(Slot nearer, Slot farther, const MovingSet<Path>& x) const {
+    return this->inner().length_order(nearer / 2, farther / 2, x);
+  }
+  /// Not so where an edge leads from a point to its own copy.
+  bool joins_two(TriangulationEdges::Number edge) const {
+    const auto& edges = this->inner().edges();
+    return edges.contains(edge) && edges.ends(edge)[0] != edges.ends(edge)[1];
   }
   void make_room(Id id) {
     if (id < chosen_.size()) return;
@@ -94,10 +99,10 @@ class NearestNeighboursRule : public StandsOn<DelaunayRule<Path>> {
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <class Path>
-std::optional<Id> NearestNeighboursRule<Path>::nearest(Id id) const {
+template <class Path, class Delaunay>
+std::optional<Id> NearestNeighboursRule<Path, Delaunay>::nearest(Id id) const {
   if (id >= present_.size() || !present_[id]) return std::nullopt;
-  const DelaunayRule<Path>& delaunay = this->inner();
+  const Delaunay& delaunay = this->inner();
   if (delaunay.has_shared_vertices()) {
     if (delaunay.vertex(id) != id) return delaunay.vertex(id);
     for (Id other = 0; other < present_.size(); ++other) {
@@ -114,8 +119,8 @@ std::optional<Id> NearestNeighboursRule<Path>::nearest(Id id) const {
   return only;
 }
 
-template <class Path>
-void NearestNeighboursRule<Path>::let_go(TriangulationEdges::Number edge, Pen& repair) {
+template <class Path, class Delaunay>
+void NearestNeighboursRule<Path, Delaunay>::let_go(TriangulationEdges::Number edge, Pen& repair) {
   for (const Slot slot : {2 * edge, 2 * edge + 1}) {
     if (!listed(slot)) return;
     const Id id = from(slot);
@@ -127,8 +132,8 @@ void NearestNeighboursRule<Path>::let_go(TriangulationEdges::Number edge, Pen& r
   ends_[edge] = {nobody, nobody};
 }
 
-template <class Path>
-void NearestNeighboursRule<Path>::take_up(TriangulationEdges::Number edge) {
+template <class Path, class Delaunay>
+void NearestNeighboursRule<Path, Delaunay>::take_up(TriangulationEdges::Number edge) {
   if (edge >= ends_.size()) ends_.resize(edge + std::size_t{1}, {nobody, nobody});
   if (listed(2 * edge)) return;
   ends_[edge] = this->inner().edges().ends(edge);
@@ -139,12 +144,12 @@ void NearestNeighboursRule<Path>::take_up(TriangulationEdges::Number edge) {
   }
 }
 
-template <class Path>
-Effect NearestNeighboursRule<Path>::follow(std::span<const EdgeChange> changes, Pen& repair) {
+template <class Path, class Delaunay>
+Effect NearestNeighboursRule<Path, Delaunay>::follow(std::span<const EdgeChange> changes, Pen& repair) {
   changed_.clear();
   for (const EdgeChange& change : changes) let_go(change.edge, repair);
   for (const EdgeChange& change : changes) {
-    if (this->inner().edges().contains(change.edge)) take_up(change.edge);
+    if (joins_two(change.edge)) take_up(change.edge);
   }
   std::sort(changed_.begin(), changed_.end());
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
@@ -158,14 +163,14 @@ Effect NearestNeighboursRule<Path>::follow(std::span<const EdgeChange> changes, 
   return changed_.empty() ? Effect::internal : Effect::external;
 }
 
-template <class Path>
-void NearestNeighboursRule<Path>::audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
+template <class Path, class Delaunay>
+void NearestNeighboursRule<Path, Delaunay>::audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
   const auto require = [](bool right, Id id, const char* what) {
     if (!right) throw AuditFailure(std::string(name) + ": point " + std::to_string(id) + ": " + what);
   };
-  const TriangulationEdges& edges = this->inner().edges();
+  const auto& edges = this->inner().edges();
   for (TriangulationEdges::Number edge = 0; edge < std::max<std::size_t>(edges.end(), ends_.size()); ++edge) {
-    require(edges.contains(edge) == listed(2 * edge), 0, "an edge of the triangulation is missing or gone");
+    require(joins_two(edge) == listed(2 * edge), 0, "an edge of the triangulation is missing or gone");
     if (listed(2 * edge)) require(ends_[edge] == edges.ends(edge), ends_[edge][0], "an edge has other ends");
   }
   for (Id id = 0; id < chosen_.size(); ++id) {

@@ -58,6 +58,14 @@ class PlaneTriangulationRule {
   std::vector<Id> hull() const;
   /// The edges between points, under numbers that they keep. Those of a convex hull are not numbered.
   const TriangulationEdges& edges() const { return edges_; }
+  /// Certificate that an edge is not longer than another.
+  using LengthOrder = certificates::DistanceOrder<Path>;
+  LengthOrder length_order(TriangulationEdges::Number edge, TriangulationEdges::Number other,
+                           const MovingSet<Path>& x) const {
+    const auto [a, b] = edges_.ends(edge);
+    const auto [c, d] = edges_.ends(other);
+    return {x[a], x[b], x[c], x[d]};
+  }
   /// How often it has been built anew.
   std::uint64_t rebuilds() const { return rebuilds_; }
 

@@ -15,7 +15,8 @@
 
 namespace kds::structures {
 
-/// Keeps a shortest tree that joins all points of the plane. It stands on a Delaunay triangulation, whose edges contain
+/// Keeps a shortest tree that joins all points of the plane; or of a plane that repeats itself, one copy of each, where
+/// it is SpanningTreeRule<Path, PeriodicDelaunayRule<Path>>. It stands on a Delaunay triangulation, whose edges contain
 /// it [Shamos75], and keeps these in order of their lengths: the tree depends on that order only [Kruskal56]. Two edges
 /// that change places in it exchange their parts in the tree if the longer closes a cycle with the shorter.
 ///
@@ -26,10 +27,10 @@ namespace kds::structures {
 ///
 /// Of points that stay in one place the tree has one (DelaunayRule::vertex). While all points stay on one line nothing
 /// is known (DelaunayRule::flat).
-template <class Path>
+template <class Path, class Delaunay = DelaunayRule<Path>>
 class SpanningTreeRule
-    : public OrderedRule<SpanningTreeRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>> {
-  using Base = OrderedRule<SpanningTreeRule<Path>, DelaunayRule<Path>, certificates::DistanceOrder<Path>>;
+    : public OrderedRule<SpanningTreeRule<Path, Delaunay>, Delaunay, typename Delaunay::LengthOrder> {
+  using Base = OrderedRule<SpanningTreeRule<Path, Delaunay>, Delaunay, typename Delaunay::LengthOrder>;
 
  public:
   static constexpr const char* name = "SpanningTree";
@@ -50,10 +51,8 @@ class SpanningTreeRule
   Edge candidate(const EdgeChange& change) const { return change.edge; }
   bool takes_part(Edge edge) const { return this->inner().edges().contains(edge); }
   std::array<Id, 2> ids(Edge edge) const { return this->inner().edges().ends(edge); }
-  certificates::DistanceOrder<Path> in_order(Edge edge, Edge other, const MovingSet<Path>& x) const {
-    const auto [a, b] = ids(edge);
-    const auto [c, d] = ids(other);
-    return {x[a], x[b], x[c], x[d]};
+  typename Delaunay::LengthOrder in_order(Edge edge, Edge other, const MovingSet<Path>& x) const {
+    return this->inner().length_order(edge, other, x);
   }
   Effect swapped(Edge longer, Edge shorter) {
     if (!contains(longer) || contains(shorter)) return Effect::internal;

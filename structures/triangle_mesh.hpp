@@ -4,6 +4,7 @@
 #include "kds/audit.hpp"
 #include "kds/framework/moving_set.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -134,13 +135,19 @@ class TriangleMesh {
   void flip(Edge h) {
     const Edge g = twin_[h];
     const Id a = origin_[h], b = origin_[g], c = apex(h), d = apex(g);
-    const Edge bc = twin_[next(h)], ca = twin_[previous(h)], ad = twin_[next(g)], db = twin_[previous(g)];
-    const Edge first = h - h % 3;
-    const Edge second = g - g % 3;
+    const Outer before = outer_before(h), after = outer_after(h);
+    Outer beyond{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      beyond[i] = twin_[before[i]];
+      // The two triangles may share another edge where the surface is not a sphere.
+      const auto shared = std::find(before.begin(), before.end(), beyond[i]);
+      if (shared != before.end()) beyond[i] = after[static_cast<std::size_t>(shared - before.begin())];
+    }
+    const Edge first = after[0], second = after[2];
     set_origin(first, a), set_origin(first + 1, d), set_origin(first + 2, c);
     set_origin(second, d), set_origin(second + 1, b), set_origin(second + 2, c);
-    join(first, ad), join(first + 1, second + 2), join(first + 2, ca);
-    join(second, db), join(second + 1, bc);
+    join(first + 1, second + 2);
+    for (std::size_t i = 0; i < 4; ++i) join(after[i], beyond[i]);
   }
 
   /// Gives a vertex another id. Precondition: the other is not in the mesh.
@@ -156,21 +163,10 @@ class TriangleMesh {
 
   /// Throws AuditFailure unless it is a sphere.
   void audit() const {
-    const auto fail = [](std::size_t h, const char* what) {
-      throw AuditFailure("TriangleMesh: half-edge " + std::to_string(h) + ": " + what);
-    };
-    std::size_t vertices = contains(infinite);
-    for (const Edge h : from_) vertices += h != none;
-    for (std::uint32_t t = 0; t < end_triangle(); ++t) {
-      if (!in_use(t)) continue;
-      for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
-        if (twin_[h] == none || twin_[twin_[h]] != h) fail(h, "is not its twin's twin");
-        if (origin(twin_[h]) != target(h)) fail(h, "does not end where its twin begins");
-        if (!contains(origin_[h]) || origin_[from(origin_[h])] != origin_[h])
-          fail(h, "begins at a vertex that is not there");
-      }
+    const std::size_t vertices = audit_links();
+    if (!empty() && size() != 2 * vertices - 4) {
+      throw AuditFailure("TriangleMesh: " + std::to_string(size()) + " triangles are not as many as on a sphere");
     }
-    if (!empty() && size() != 2 * vertices - 4) fail(size(), "the triangles are not as many as on a sphere");
   }
 
   template <class Archive>
@@ -178,7 +174,18 @@ class TriangleMesh {
     archive(origin_, twin_, from_, at_infinity_, free_);
   }
 
- private:
+ protected:
+  /// The half-edges a-d, c-a, d-b, b-c around an edge h that is to be flipped; and where a flip puts them.
+  using Outer = std::array<Edge, 4>;
+  Outer outer_before(Edge h) const {
+    const Edge g = twin_[h];
+    return {next(g), previous(h), previous(g), next(h)};
+  }
+  Outer outer_after(Edge h) const {
+    const Edge first = h - h % 3, second = twin_[h] - twin_[h] % 3;
+    return {first, first + 2, second, second + 1};
+  }
+
   Edge create(const std::array<Id, 3>& corners) {
     Edge h = 0;
     if (free_.empty()) {
@@ -213,6 +220,26 @@ class TriangleMesh {
     twin_[g] = h;
   }
 
+  /// Throws AuditFailure unless half-edges are twins and begin at vertices; gives the number of vertices.
+  std::size_t audit_links() const {
+    const auto fail = [](std::size_t h, const char* what) {
+      throw AuditFailure("TriangleMesh: half-edge " + std::to_string(h) + ": " + what);
+    };
+    for (std::uint32_t t = 0; t < end_triangle(); ++t) {
+      if (!in_use(t)) continue;
+      for (Edge h = 3 * t; h < 3 * t + 3; ++h) {
+        if (twin_[h] == none || twin_[twin_[h]] != h) fail(h, "is not its twin's twin");
+        if (origin(twin_[h]) != target(h)) fail(h, "does not end where its twin begins");
+        if (!contains(origin_[h]) || origin_[from(origin_[h])] != origin_[h])
+          fail(h, "begins at a vertex that is not there");
+      }
+    }
+    std::size_t vertices = contains(infinite);
+    for (const Edge h : from_) vertices += h != none;
+    return vertices;
+  }
+
+ private:
   std::vector<Id> origin_;
   std::vector<Edge> twin_;
   std::vector<Edge> from_;  ///< of a vertex

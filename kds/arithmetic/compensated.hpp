@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace kds {
@@ -24,9 +25,10 @@ namespace kds {
 /// error of at most (3 n + 4) u on a sum of magnitudes of at most (4 n + 1) u m_0, since m_i |h|^i <= m_0. That is
 ///     |error| <= (3 n + 4) (4 n + 1) u^2 m_0 <= 20 n (n + 1) u^2 m_0,
 /// and the difference (at least 5 u^2 m_0) pays for the powers of 1 + u that were left out.
-/// Underflow may cost 2^-1072 a step, and |h|^n times that in the end: below 2^-745 for |h| <= 2^40 and degrees up to
-/// 8, or |h| <= 2^32 and degrees up to 10, which is within the bound if m_0 >= 2^-600. Beyond these limits, and where
-/// something overflows, nothing is decided: the result is 0 with an infinite radius, or not a number.
+/// Underflow may cost 2^-1072 a step, and |h|^n times that in the end: below 2^-745 for |h|^n <= 2^320 and degrees up
+/// to 100, which is within the bound if m_0 >= 2^-600. So |h| may be 2^40 for degrees up to 8, and for higher ones the
+/// greatest power of two whose power n is at most 2^320. Beyond these limits, and where something overflows, nothing is
+/// decided: the result is 0 with an infinite radius, or not a number. Degrees above 100 do not compile.
 template <int Degree, class Coefficient>
 Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x);
 
@@ -43,8 +45,8 @@ inline double low_part(const DoubleDouble& a) { return a.low; }
 
 template <int Degree, class Coefficient>
 Ball<DoubleDouble> compensated_value(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x) {
-  static_assert(Degree <= 10, "the bound on underflow is derived for degrees up to 10");
-  constexpr double farthest = Degree <= 8 ? 0x1p40 : 0x1p32;
+  static_assert(Degree <= 100, "the bound on underflow is derived for degrees up to 100");
+  constexpr double farthest = static_cast<double>(std::uint64_t{1} << (Degree <= 8 ? 40 : 320 / Degree));
   const double h = x.high;
   double s = detail::high_part(p.c[Degree]);
   double error = detail::low_part(p.c[Degree]);

@@ -38,7 +38,8 @@ struct Crossing {
 /// 0 <= w <= 1, that is over all x >= 0, without a transformation. No sign change among them: no root. One: one root.
 /// More: the interval is cut by de Casteljau's rule where the control polygon is lowest below zero, or would be.
 ///
-/// Cost: most polynomials of degree 4 are decided by one or two cuts of n (n + 1) / 2 steps each.
+/// Cost: most polynomials of degree 4 are decided by one or two cuts of n (n + 1) / 2 steps each. Degrees above 31 do
+/// not compile.
 template <int Degree>
 Crossing first_crossing(const Polynomial<Degree, Ball<double>>& p, double end);
 
@@ -95,6 +96,8 @@ struct SignMasks {
 /// A polynomial over an interval, by its Bernstein coefficients, each known to +-error.
 template <int Degree>
 struct BernsteinPiece {
+  static_assert(Degree <= 31, "failure times are found for certificates of degree 31 at most");
+
   std::array<double, std::size_t{Degree} + 1> b;
   double error;
   ProjectivePoint begin;
@@ -200,8 +203,9 @@ inline int exponent_of(double x) { return static_cast<int>((std::bit_cast<std::u
 /// place.
 template <int Degree>
 int scale_exponent(const Polynomial<Degree, Ball<double>>& p, double end) {
-  constexpr int most = 100;  // so that no power up to the tenth overflows
-  int scale = end < 0x1p100 ? exponent_of(end) + 1 : most;
+  constexpr int most = Degree <= 10 ? 100 : 960 / Degree;  // so that no power up to the last overflows, or underflows
+  constexpr double farthest = power_of_two(most);
+  int scale = end < farthest ? exponent_of(end) + 1 : most;
   const int met = Degree > 1 && std::abs(p.c[0].middle) <= p.c[0].radius ? 1 : 0;
   const int constant = exponent_of(p.c[static_cast<std::size_t>(met)].middle);
   unrolled<Degree>([&](auto below) {

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace kds::detail {
@@ -25,7 +27,7 @@ struct Slope {
 /// of times, which moves the slope by u x |f''| <= u (n - 1) Q. Charged are 4 n u Q, which also covers the roundings of
 /// Q. The bend: |f''(y)| <= sum of i (i-1) |c_i| y^(i-2) <= (n - 1) Q / x (y / x)^(n-2), and (1 + 1/(16 n))^n < 1.07;
 /// with the radii added to Q, the factor 1.25 covers that. Underflow costs 2^-1074 a step times x^n in the end, which
-/// the same reserve covers for x <= 2^40 and Q >= 2^-600; beyond these limits the error is infinite.
+/// the same reserve covers for x^n <= 2^400 and Q >= 2^-600; beyond these limits the error is infinite.
 template <int Degree>
 Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
   double slope = Degree * p.c[Degree].middle;
@@ -38,7 +40,8 @@ Slope slope_at(const Polynomial<Degree, Ball<double>>& p, double x) {
     radii = radii * x + static_cast<double>(i) * p.c[i].radius;
   }
   radii *= Ball<double>::slack;
-  const bool in_range = x <= 0x1p40 && magnitudes >= 0x1p-600;
+  constexpr double farthest = static_cast<double>(std::uint64_t{1} << (Degree <= 10 ? 40 : 400 / Degree));
+  const bool in_range = x <= farthest && magnitudes >= 0x1p-600;
   const double error = in_range ? radii + 4.0 * Degree * 0x1p-53 * magnitudes : std::numeric_limits<double>::infinity();
   return {slope, error, 1.25 * (Degree - 1) * (magnitudes + radii) / x};
 }

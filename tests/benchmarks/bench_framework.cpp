@@ -18,6 +18,7 @@
 #include "structures/gabriel_graph.hpp"
 #include "structures/growing_segments.hpp"
 #include "structures/heap.hpp"
+#include "structures/periodic_delaunay.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
 #include "structures/tournament.hpp"
@@ -168,6 +169,7 @@ void measure_plane(Id n, double end, int rounds) {
   using Path = certificates::PlaneMotion<Degree>;
   measure("convex hull", Degree, n, end, rounds, structures::ConvexHullRule<Path>{}, random_path<Degree>);
   measure("Delaunay", Degree, n, end, rounds, structures::DelaunayRule<Path>{}, random_path<Degree>);
+  measure("periodic Delaunay", Degree, n, end, rounds, structures::PeriodicDelaunayRule<Path>{}, random_path<Degree>);
   const auto on_delaunay = [&]<class Rule>(const char* name, const Rule& rule) {
     measure(name, Degree, n, rounds, [&] {
       Random random(n);

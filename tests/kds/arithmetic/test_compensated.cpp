@@ -48,12 +48,13 @@ template <int Degree, class Coefficient>
 bool bound_is_tight(const Polynomial<Degree, Coefficient>& p, const DoubleDouble& x) {
   double magnitudes = 0;
   for (std::size_t i = Degree + 1; i-- > 0;) magnitudes = magnitudes * size(x) + size(p.c[i]);
-  return compensated_value(p, x).radius <= 0x1p-95 * magnitudes;
+  return compensated_value(p, x).radius <=
+         (Degree <= 8 ? 0x1p-95 : 21.0 * Degree * (Degree + 1) * 0x1p-106) * magnitudes;
 }
 
 }  // namespace
 
-#define FOR_EACH_DEGREE ((int Degree), Degree), 0, 1, 2, 3, 4, 6, 8
+#define FOR_EACH_DEGREE ((int Degree), Degree), 0, 1, 2, 3, 4, 6, 8, 10, 12, 31
 
 TEMPLATE_TEST_CASE_SIG("compensated values are within their bounds", "[compensated]", FOR_EACH_DEGREE) {
   const std::uint64_t seed = 4000;
@@ -68,7 +69,8 @@ TEMPLATE_TEST_CASE_SIG("compensated values are within their bounds", "[compensat
       p.c[i] = random.scaled(-spread, spread);
       fine.c[i] = two_sum(random.scaled(-spread, spread), random.scaled(-spread - 20, spread));
     }
-    const DoubleDouble x = two_sum(random.scaled(-39, 38), random.one_in(2) ? 0 : random.scaled(-80, 38));
+    const int most = Degree <= 8 ? 38 : 320 / Degree - 2;
+    const DoubleDouble x = two_sum(random.scaled(-39, most), random.one_in(2) ? 0 : random.scaled(-80, most));
     // Often next to a root, where nearly everything cancels.
     if (round % 2 == 0) p.c[0] -= Polynomial<Degree>(p)(x.high);
     wrong += !bound_holds(p, x) + !bound_holds(fine, x);
@@ -82,6 +84,8 @@ TEMPLATE_TEST_CASE_SIG("compensated values are within their bounds", "[compensat
 TEST_CASE("beyond its limits a compensated value says so", "[compensated]") {
   const double infinity = std::numeric_limits<double>::infinity();
   CHECK(compensated_value(Polynomial<2>{{1, 1, 1}}, 0x1p50).radius == infinity);
+  CHECK(compensated_value(Polynomial<12>{{1}}, 0x1p26).radius < infinity);
+  CHECK(compensated_value(Polynomial<12>{{1}}, 0x1p27).radius == infinity);
   CHECK(compensated_value(Polynomial<2>{{0x1p-700, 0x1p-700, 0}}, 1.0).radius == infinity);
   CHECK(certain_sign(compensated_value(Polynomial<2>{{1, 0x1p1000, 0x1p1000}}, 0x1p30)) == 0);
   // Where there is no fused multiply-add the splitting overflows.
@@ -105,7 +109,7 @@ TEMPLATE_TEST_CASE_SIG("differences of motions come out the same as by polynomia
     const auto value = extended_difference(a, b, t);
     const Exact expected = difference_about<Exact>(a, b, t).c[0];
     wrong += !within(exact(value.middle) - expected, value.radius * Ball<DoubleDouble>::slack);
-    wrong += !(value.radius < 1e-20);
+    wrong += !(value.radius < (Degree <= 12 ? 1e-20 : 1e-4));
   }
   CAPTURE(Degree, seed);
   CHECK(wrong == 0);

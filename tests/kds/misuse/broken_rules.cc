@@ -158,6 +158,8 @@ void parts(Schedule<DefaultEventQueue, LateSolver>& schedule, Kinetic<Archived>&
   MovingSet<MovesByNumber> moving;
 }
 
+double time_of_high_degree() { return failure_time(PolynomialCertificate<32>{}, 0, 1); }
+
 struct Unsaved {
   std::string* text;
   std::optional<std::string> name;

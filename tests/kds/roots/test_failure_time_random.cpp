@@ -57,6 +57,26 @@ TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR
   });
 }
 
+TEMPLATE_TEST_CASE_SIG("failure times of high degrees, those of extreme coefficients too", "[failure_time]",
+                       ((int Degree), Degree), 11, 12, 16, 31) {
+  run<Degree>(800, 20, [](Random& random) {
+    check(random_motion<Degree>(random), random.between(-2, 2));
+    std::array<double, Degree> roots;
+    for (double& root : roots) root = random.integer(-2, 2);
+    check_around(polynomial_from_roots<Degree>(roots, random.one_in(2) ? 1 : -1, 0), random.integer(-3, 3));
+    // Powers of the scale on which these change are out of the range of doubles.
+    Motion<Degree> f;
+    for (double& c : f.position.c) c = random.scaled(-900, 900);
+    f.position.c[0] = std::abs(f.position.c[0]);
+    check(f, 0);
+    f.position.c.fill(0);
+    f.position.c[0] = 0x1p-1000;
+    f.position.c[Degree - 1] = random.between(-1, -0.5) * 0x1p912;
+    f.position.c[Degree] = random.between(0.5, 1) * 0x1p1023;
+    check(f, 0);
+  });
+}
+
 TEMPLATE_TEST_CASE_SIG("failure times of double, nearly double and triple roots", "[failure_time]", FOR_DEGREES_TO_8) {
   run<Degree>(400, 60, [](Random& random) {
     std::array<double, Degree> roots;
