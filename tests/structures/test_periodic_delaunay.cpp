@@ -171,17 +171,17 @@ TEST_CASE("of none, one, two and three points", "[periodic_delaunay][degeneracy]
 }
 
 TEST_CASE("square lattices, at rest and sheared", "[periodic_delaunay][degeneracy]") {
-  for (const int side : {1, 2, 3, 5}) {
+  for (const Id side : {1u, 2u, 3u, 5u}) {
     CAPTURE(side);
     MovingSet<Path> set;
-    const auto n = static_cast<Id>(side * side);
+    const Id n = side * side;
     for (Id id = 0; id < n; ++id) set.insert(id, line(id % side, id / side), 0);
     Kinetic<Rule> structure(set, 0, Rule({1.0 * side, 1.0 * side}));
     CHECK(structure.next_time() == never);
     CHECK(check_periodic(structure.rule(), set, 0) == 0);
     // The rows slide over each other, and all cells are on circles again and again.
     for (Id id = 0; id < n; ++id) set.update(id, line(id % side, id / side, id / side), 0);
-    CHECK(run_out(structure, set, 0, 2, side) == 0);
+    CHECK(run_out(structure, set, 0, 2, static_cast<int>(side)) == 0);
     for (Id id = 0; id < n; id += 2) set.remove(id, 2);
     CHECK(run_out(structure, set, 2, 3) == 0);
   }
