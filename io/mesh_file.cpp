@@ -144,8 +144,12 @@ MeshData read_obj(const std::filesystem::path& file) {
         throw MeshFileError("a face names vertex " + std::to_string(std::uint64_t{corner} + 1) + ", but the file has " +
                             std::to_string(mesh.vertices.size()) + " vertices");
       }
-      const auto triangles = cut_into_triangles(mesh.vertices, face.corners);
-      mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
+      auto triangles = cut_into_triangles(mesh.vertices, face.corners);
+      if (!triangles) {
+        triangles = fan(face.corners);
+        mesh.fans.push_back(face.line);
+      }
+      mesh.triangles.insert(mesh.triangles.end(), triangles->begin(), triangles->end());
     });
   }
   return mesh;
@@ -208,6 +212,26 @@ std::vector<std::size_t> leave_out_degenerate(MeshData& mesh) {
   if (kept.empty()) return {};
   mesh.triangles = std::move(kept);
   return left_out;
+}
+
+std::vector<std::string> mend(MeshData& mesh) {
+  std::vector<std::string> sentences;
+  const auto number = [](std::size_t n) { return std::to_string(n); };
+  if (const std::vector<std::size_t>& fans = mesh.fans; fans.size() == 1) {
+    sentences.push_back("a face crosses itself and is cut as a fan, in line " + number(fans[0]));
+  } else if (!fans.empty()) {
+    sentences.push_back(number(fans.size()) + " faces cross themselves and are cut as fans, the first is in line " +
+                        number(fans[0]));
+  }
+  const std::size_t triangles = mesh.triangles.size();
+  const std::string all = " of " + number(triangles) + (triangles == 1 ? " triangle" : " triangles");
+  if (const std::vector<std::size_t> left_out = leave_out_degenerate(mesh); left_out.size() == 1) {
+    sentences.push_back('1' + all + " is degenerate and left out, triangle " + number(left_out[0]));
+  } else if (!left_out.empty()) {
+    sentences.push_back(number(left_out.size()) + all + " are degenerate and left out, the first is triangle " +
+                        number(left_out[0]));
+  }
+  return sentences;
 }
 
 std::string to_obj(const MeshData& mesh) {

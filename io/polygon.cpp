@@ -1,6 +1,5 @@
 #include "io/polygon.hpp"
 
-#include "io/mesh_file.hpp"
 #include "kds/arithmetic/ball.hpp"
 #include "kds/arithmetic/exact.hpp"
 #include "kds/motion.hpp"
@@ -83,14 +82,14 @@ class Outline {
     previous_.front() = corners_.size() - 1;
   }
 
-  std::vector<Triangle> cut() {
+  std::optional<std::vector<Triangle>> cut() {
     while (left_ > 2) {
       // Triangles without area leave a corner out, which a neighbour of the polygon may have: so they come late.
       if (remove_first([this](std::size_t b) { return is_ear(b) && !passes_corner(b); }, true)) continue;
       if (remove_first([this](std::size_t b) { return turn_at(b) == 0 && goes_back(b); }, false)) continue;
       if (remove_first([this](std::size_t b) { return is_ear(b); }, true)) continue;
       if (remove_first([this](std::size_t b) { return turn_at(b) == 0; }, false)) continue;
-      throw MeshFileError("a polygon crosses itself");
+      return std::nullopt;
     }
     return std::move(triangles_);
   }
@@ -200,9 +199,11 @@ class Outline {
 
 }  // namespace
 
-std::vector<Triangle> cut_into_triangles(std::span<const Vector3d> vertices, std::span<const Index> polygon) {
+std::optional<std::vector<Triangle>> cut_into_triangles(std::span<const Vector3d> vertices,
+                                                        std::span<const Index> polygon) {
+  using Triangles = std::vector<Triangle>;
   const auto corner = [&](std::size_t i) { return polygon[std::min(i, polygon.size() - 1)]; };
-  if (polygon.size() <= 3) return {{corner(0), corner(1), corner(2)}};
+  if (polygon.size() <= 3) return Triangles{{corner(0), corner(1), corner(2)}};
   std::vector<Index> corners;
   std::vector<const Vector3d*> places;
   for (const Index i : polygon) {
@@ -215,9 +216,10 @@ std::vector<Triangle> cut_into_triangles(std::span<const Vector3d> vertices, std
   if (view.x == view.y) {
     // It comes back along all its edges, seen from anywhere, or else encloses as much one way as the other.
     for (const View& any : views) {
-      if (!Outline(corners, places, any).cut().empty()) throw MeshFileError("a polygon crosses itself");
+      const auto triangles = Outline(corners, places, any).cut();
+      if (!triangles || !triangles->empty()) return std::nullopt;
     }
-    return {{corner(0), corner(0), corner(0)}};
+    return Triangles{{corner(0), corner(0), corner(0)}};
   }
   if (places.size() == 4) {
     const auto turns_left = [&](std::size_t i) {
@@ -225,11 +227,17 @@ std::vector<Triangle> cut_into_triangles(std::span<const Vector3d> vertices, std
     };
     if (turns_left(0) && turns_left(1) && turns_left(2) && turns_left(3)) {
       const bool even = (*places[2] - *places[0]).squaredNorm() < (*places[3] - *places[1]).squaredNorm();
-      if (even) return {{corners[0], corners[1], corners[2]}, {corners[0], corners[2], corners[3]}};
-      return {{corners[0], corners[1], corners[3]}, {corners[1], corners[2], corners[3]}};
+      if (even) return Triangles{{corners[0], corners[1], corners[2]}, {corners[0], corners[2], corners[3]}};
+      return Triangles{{corners[0], corners[1], corners[3]}, {corners[1], corners[2], corners[3]}};
     }
   }
   return Outline(std::move(corners), std::move(places), view).cut();
+}
+
+std::vector<Triangle> fan(std::span<const Index> polygon) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 2; i < polygon.size(); ++i) triangles.push_back({polygon[0], polygon[i - 1], polygon[i]});
+  return triangles;
 }
 
 }  // namespace kds::io

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,10 +24,14 @@ namespace kds::io {
 /// without area (collision::is_degenerate), so that it is counted with others of that kind (leave_out_degenerate() in
 /// mesh_file.hpp).
 ///
-/// Throws MeshFileError for a polygon that crosses itself, or goes around more than once. Precondition: it has a
-/// corner, and the vertices are finite. Cost: ears are cut off, each found by comparison with all edges that are left:
-/// O(n^2) for ordinary outlines of n corners, O(n^3) at worst.
-std::vector<std::array<std::uint32_t, 3>> cut_into_triangles(std::span<const Eigen::Vector3d> vertices,
-                                                             std::span<const std::uint32_t> polygon);
+/// Nothing for a polygon that crosses itself, or goes around more than once: there are no such triangles. Precondition:
+/// it has a corner, and the vertices are finite. Cost: ears are cut off, each found by comparison with all edges that
+/// are left: O(n^2) for ordinary outlines of n corners, O(n^3) at worst.
+std::optional<std::vector<std::array<std::uint32_t, 3>>> cut_into_triangles(std::span<const Eigen::Vector3d> vertices,
+                                                                            std::span<const std::uint32_t> polygon);
+
+/// The triangles of the first corner with each two others that follow each other: a surface with the edges of the
+/// polygon, whatever it is. Precondition: it has three corners.
+std::vector<std::array<std::uint32_t, 3>> fan(std::span<const std::uint32_t> polygon);
 
 }  // namespace kds::io

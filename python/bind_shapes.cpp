@@ -82,8 +82,8 @@ void bind_shapes(py::module_& module) {
   module.def("read_mesh", [](const std::string& file, double scale) {
     try {
       auto data = kds::io::read_mesh_file(file);
-      const std::vector<std::size_t> left_out = kds::io::leave_out_degenerate(data);
-      return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), left_out);
+      const std::vector<std::string> mended = kds::io::mend(data);
+      return py::make_tuple(mesh_shape(std::move(data.vertices), std::move(data.triangles), scale), mended);
     } catch (const std::exception& error) {  // which do not name the file
       throw std::invalid_argument(file + ": " + error.what());
     }

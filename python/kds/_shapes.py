@@ -93,10 +93,10 @@ def compound(
 
 
 def read_mesh(file: str | os.PathLike[str], scale: float = 1.0) -> Shape:
-    """A mesh from an OBJ or STL file. Triangles without an area are left out, with a warning that counts them."""
+    """A mesh from an OBJ or STL file. Triangles without an area are left out, and faces that cross themselves are cut as
+    fans from their first corner, with warnings that count them."""
     name = path("file", file)
-    shape, left_out = _kds.read_mesh(name, number("scale", scale))
-    if left_out:
-        text = f"{name}: {len(left_out)} degenerate triangles are left out, the first is {left_out[0]}"
-        warnings.warn(text, stacklevel=2)
+    shape, mended = _kds.read_mesh(name, number("scale", scale))
+    for sentence in mended:
+        warnings.warn(f"{name}: {sentence}", stacklevel=2)
     return shape

@@ -177,6 +177,9 @@ TEST_CASE("scene reader: degenerate triangles of a mesh file are left out, and w
   CHECK(read("f 1 2 3\nf 1 1 2\nf 2 3 4\nf 1 2 4\n").warnings ==
         std::vector<std::string>{where + "2 of 4 triangles are degenerate and left out, the first is triangle 1"});
   CHECK_THROWS_WITH(read("f 1 2 4\n"), where + "triangle 0: is degenerate, its corners lie in a line");
+  CHECK(read("f 2 3 4 1\nf 3 1 2 3 1 2\n").warnings ==
+        std::vector<std::string>{where + "a face crosses itself and is cut as a fan, in line 6",
+                                 where + "2 of 5 triangles are degenerate and left out, the first is triangle 2"});
 }
 
 TEST_CASE("scene reader: a shape is placed about its pivot") {
