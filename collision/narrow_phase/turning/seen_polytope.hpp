@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -90,8 +89,9 @@ struct SeenCorners {
 
   /// What it covers at most along a unit vector while it turns about an axis.
   double revolving_reach(const Eigen::Vector3d& n, const Eigen::Vector3d& spin) const {
-    const auto corner = [this](std::uint32_t i) -> const Eigen::Vector3d& { return points[i]; };
-    return collision::revolving_reach(n, spin, structure->corners | std::views::transform(corner));
+    return collision::revolving_reach(n, spin, [this](const auto& take) {
+      for (const std::uint32_t i : structure->corners) take(points[i]);
+    });
   }
 
   const HullStructure* structure;

@@ -281,12 +281,12 @@ double TurningBoxes<Degree>::depth(double t) const {
 /// Along the direction that a way has now, and between the origins.
 template <int Degree>
 double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame, int way) const {
-  const auto seen = [](const Eigen::Matrix3d& axes, const AlignedBox& box) {
-    std::array<Eigen::Vector3d, 8> corners;
-    for (int signs = 0; signs < 8; ++signs) corners[static_cast<std::size_t>(signs)] = axes * corner(box, signs);
-    return corners;
+  const auto corners = [](const Eigen::Matrix3d& axes, const AlignedBox& box) {
+    return [&axes, &box](const auto& take) {
+      for (int signs = 0; signs < 8; ++signs) take(Eigen::Vector3d(axes * corner(box, signs)));
+    };
   };
-  const auto of_a = seen(frame.matrix_a, box_a_.exact), of_b = seen(frame.matrix_b, box_b_.exact);
+  const auto of_a = corners(frame.matrix_a, box_a_.exact), of_b = corners(frame.matrix_b, box_b_.exact);
   const auto along = [&](const Eigen::Vector3d& n) {
     const double covered = revolving_reach(n, frame.spin_a, of_a) + revolving_reach(-n, frame.spin_b, of_b);
     return collision::revolving_apart_for(frame, n, covered);

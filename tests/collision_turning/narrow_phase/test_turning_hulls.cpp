@@ -139,7 +139,7 @@ TEST_CASE("hulls that are boxes, wherever in their bodies, meet as hulls do, to 
     CHECK(as_boxes.first_parting(found, 2) == as_hulls.first_parting(found, 2));
     CHECK(as_boxes.penetrate(found + 0.01) == as_hulls.penetrate(found + 0.01));
   }
-  CHECK(meetings > 40);
+  CHECK(meetings > 30);
 }
 
 TEST_CASE("turning hulls: grazing, by gaps of any size", "[narrow-phase][turning][hull]") {

@@ -138,7 +138,11 @@ TEMPLATE_TEST_CASE_SIG("shifted balls contain the shifted polynomial", "[compens
     const auto expected = about<Exact>(m, epoch);
     for (std::size_t i = 0; i <= Degree; ++i) {
       const double bound = found.c[i].radius * Ball<double>::slack;
-      wrong += !within(Exact(found.c[i].middle) - expected.c[i], bound);
+      if (std::isfinite(found.c[i].middle) && std::isfinite(bound)) {
+        wrong += !within(Exact(found.c[i].middle) - expected.c[i], bound);
+      } else {  // a power of a high degree overflows
+        wrong += Degree <= 8 || certain_sign(found.c[i]) != 0;
+      }
     }
     wrong += found.c[Degree].radius != 0;  // the leading one is exact
     if (epoch == m.start) {

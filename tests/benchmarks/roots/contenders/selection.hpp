@@ -44,7 +44,7 @@ inline double within(double t, double horizon) { return t <= horizon ? t : never
 /// Real roots as they come out of a formula.
 template <int Degree>
 struct RealRoots {
-  std::array<double, Degree> x;
+  std::array<double, Degree> x{};
   std::size_t count = 0;
 
   void add(double root) { x[count++] = root; }
