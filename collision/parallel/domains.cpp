@@ -20,18 +20,6 @@ void Domains<Motion>::in_each(const Work& work) {
 }
 
 template <class Motion>
-template <class Take>
-void Domains<Motion>::each_process(std::span<const DomainIndex> domains, const Take& take) const {
-  std::size_t last = team_.rank();
-  for (const DomainIndex domain : domains) {
-    const std::size_t process = process_of(domain);
-    if (process == last || process == team_.rank()) continue;
-    take(process);
-    last = process;
-  }
-}
-
-template <class Motion>
 bool Domains<Motion>::has(BodySlot number) const {
   if (!any()) return !store_.is_part();
   if (store_.find(number) == no_body) return false;
@@ -244,17 +232,6 @@ Letters Domains<Motion>::letters_of(NewsByProcess news) {
   Letters letters;
   for (auto& [process, of_process] : news) letters.to(process)(of_process);
   return letters;
-}
-
-template <class Motion>
-template <class Take>
-void Domains<Motion>::exchange_news(Letters letters, const Take& take) {
-  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
-    WindowNews<Motion> heard;
-    heard.newcomers.bodies.meshes = meshes_;
-    reader(heard);
-    take(heard);
-  });
 }
 
 /// The moves of bodies owned here: to those that knew them or are to know them, and to those that did not know them,

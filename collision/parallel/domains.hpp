@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -94,7 +95,15 @@ class Domains {
   bool is_here(std::size_t domain) const { return process_of(domain) == team_.rank(); }
   /// Calls take(process) for each other process that runs some of these domains, which must be ascending.
   template <class Take>
-  void each_process(std::span<const DomainIndex> domains, const Take& take) const;
+  void each_process(std::span<const DomainIndex> domains, const Take& take) const {
+    std::size_t last = team_.rank();
+    for (const DomainIndex domain : domains) {
+      const std::size_t process = process_of(domain);
+      if (process == last || process == team_.rank()) continue;
+      take(process);
+      last = process;
+    }
+  }
   std::vector<double> share_step();
   void compare();
   double halo_used(const Domain<Motion>& domain, double nearest_stranger) const;
@@ -105,8 +114,16 @@ class Domains {
   void note_move(BodySlot number, DomainIndex owner, std::span<const DomainIndex> knowers);
   void take_in(const Parcel<Motion>& newcomers);
   void hear(const WindowNews<Motion>& news);
+  /// Calls take(news) for what each process has written to this one.
   template <class Take>
-  void exchange_news(Letters letters, const Take& take);
+  void exchange_news(Letters letters, const Take& take) {
+    team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+      WindowNews<Motion> heard;
+      heard.newcomers.bodies.meshes = meshes_;
+      reader(heard);
+      take(heard);
+    });
+  }
 
   // divide_bodies.cpp
   void share_meshes();
