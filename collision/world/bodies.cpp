@@ -180,6 +180,22 @@ std::vector<std::shared_ptr<const Mesh>> Bodies<Motion>::meshes() const {
   return result;
 }
 
+/// From a body to its image, or back: what is copied as it is.
+template <class Motion, class From, class To>
+static void copy_properties(const From& from, To& to) {
+  to.mass = from.mass, to.inverse_mass = from.inverse_mass, to.restitution = from.restitution;
+  to.volume = from.volume, to.sensor = from.sensor, to.self_contacts = from.self_contacts;
+  to.user_data = from.user_data;
+  to.meetings = from.meetings, to.burst_start = from.burst_start;
+  if constexpr (turns<Motion>) {
+    to.inverse_inertia = from.inverse_inertia;
+    to.friction = from.friction, to.tangential_restitution = from.tangential_restitution;
+    to.rolling_friction = from.rolling_friction;
+    to.tumbles = from.tumbles;
+  }
+  if constexpr (Motion::degree >= 3) to.given = from.given;
+}
+
 template <class Motion>
 template <class One>
 void Bodies<Motion>::describe(BodySlot slot, One& one, const std::vector<std::shared_ptr<const Mesh>>& meshes) const {
@@ -191,18 +207,9 @@ void Bodies<Motion>::describe(BodySlot slot, One& one, const std::vector<std::sh
     one.mesh = static_cast<std::uint32_t>(std::find(meshes.begin(), meshes.end(), mesh) - meshes.begin());
   }
   one.motion = motion(slot);
-  one.mass = b.mass, one.inverse_mass = b.inverse_mass, one.restitution = b.restitution;
-  one.filter = b.filter, one.volume = b.volume, one.sensor = b.sensor;
-  one.self_contacts = b.self_contacts, one.user_data = b.user_data;
-  one.meetings = b.meetings, one.burst_start = b.burst_start;
-  if constexpr (turns<Motion>) {
-    one.inverse_inertia = b.inverse_inertia;
-    one.friction = b.friction, one.tangential_restitution = b.tangential_restitution;
-    one.rolling_friction = b.rolling_friction;
-    one.tumbles = b.tumbles;
-  }
+  copy_properties<Motion>(b, one);
+  one.filter = b.filter;
   if constexpr (Motion::degree <= 2) one.force = free_acceleration(slot);
-  if constexpr (Motion::degree >= 3) one.given = b.given;
 }
 
 template <class Motion>
@@ -307,20 +314,10 @@ void Bodies<Motion>::become(BodySlot slot, const One& one) {
   b.alive = true, b.entered = one.entered;
   set_shape(slot, one.placed);
   move(slot, one.motion);
-  b.mass = one.mass, b.inverse_mass = one.inverse_mass, b.restitution = one.restitution;
+  copy_properties<Motion>(one, b);
   set_filter(slot, one.filter);
-  b.volume = one.volume, b.sensor = one.sensor;
-  b.self_contacts = one.self_contacts, b.user_data = one.user_data;
-  if constexpr (turns<Motion>) {
-    b.inverse_inertia = one.inverse_inertia;
-    b.friction = one.friction, b.tangential_restitution = one.tangential_restitution;
-    b.rolling_friction = one.rolling_friction;
-    b.tumbles = one.tumbles;
-  }
   sensors_ = sensors_ || b.sensor;
-  b.meetings = one.meetings, b.burst_start = one.burst_start;
   if constexpr (Motion::degree == 2) b.force = one.force;
-  if constexpr (Motion::degree >= 3) b.given = one.given;
 }
 
 #define KDS_INSTANTIATE(motion) template class Bodies<motion>;
