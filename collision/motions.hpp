@@ -27,11 +27,12 @@
 #define KDS_FOR_EACH_MOTION(instantiate) KDS_FOR_EACH_PATH(instantiate)
 #endif
 
-// KDS_FOR_EACH_DIVISIBLE(instantiate): the same for those of worlds that can be divided (parallel/parallel_world.hpp).
+// KDS_FOR_EACH_QUADRATIC(instantiate): the same for those whose paths are of degree 2 at most: worlds of these can be
+// divided (parallel/parallel_world.hpp), and hold meshes that bend.
 #if defined(KDS_SPLINE_DEGREES)
-#define KDS_FOR_EACH_DIVISIBLE(instantiate)
+#define KDS_FOR_EACH_QUADRATIC(instantiate)
 #else
-#define KDS_FOR_EACH_DIVISIBLE(instantiate) KDS_FOR_EACH_MOTION(instantiate)
+#define KDS_FOR_EACH_QUADRATIC(instantiate) KDS_FOR_EACH_MOTION(instantiate)
 #endif
 
 // The same for all that a program is linked with, in a header: for `extern template`. (KDS_TURNING is defined for all
@@ -52,9 +53,9 @@
 #endif
 
 #ifdef KDS_TURNING
-#define KDS_FOR_ALL_DIVISIBLE(declare)                                                                              \
+#define KDS_FOR_ALL_QUADRATIC(declare)                                                                              \
   declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>) declare(certificates::RigidMotion<1>) \
       declare(certificates::RigidMotion<2>)
 #else
-#define KDS_FOR_ALL_DIVISIBLE(declare) declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>)
+#define KDS_FOR_ALL_QUADRATIC(declare) declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>)
 #endif

@@ -90,6 +90,12 @@ struct PathControls {
   double error = 0;
 
   PathControls(const certificates::PointMotion<Degree>& path, double t0, double t1);
+
+  /// Those of the same path as a parabola.
+  std::array<Eigen::Vector3d, 3> of_parabola() const {
+    if constexpr (Degree == 1) return {points[0], 0.5 * points[0] + 0.5 * points[1], points[1]};
+    if constexpr (Degree == 2) return points;
+  }
 };
 
 extern template class MovingSurface<1>;

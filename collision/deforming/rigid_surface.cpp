@@ -1,10 +1,12 @@
 #include "collision/deforming/rigid_surface.hpp"
 
 #include "collision/shapes/polytope.hpp"
+#include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -77,6 +79,7 @@ RigidSurface<Degree>::RigidSurface(const PlacedShape& shape)
   if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) surface_.set_radius(ball->radius);
   if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) surface_.set_radius(capsule->radius);
   if (std::holds_alternative<Box>(shape.shape) || std::holds_alternative<ConvexHull>(shape.shape)) surface_.set_solid();
+  for (const Vector3d& offset : offsets_) reach_ = std::max(reach_, norm(offset));
 }
 
 template <int Degree>
@@ -94,7 +97,40 @@ void RigidSurface<Degree>::move(const certificates::PointMotion<Degree>& path, d
   surface_.refit(t0, t1);
 }
 
+/// A coordinate f(t) of a vertex is replaced by the parabola with the values f(t0) and f(t1) and the derivative f'(t0).
+/// The difference is t^2 (t - h) / 6 times a third derivative, t from t0 on and h = t1 - t0: at most 2 / 81 h^3 times
+/// |W|^3 r, as what the turning adds to f is of length r, and each derivative multiplies that by |W| at most.
+template <int Degree>
+template <int PathDegree>
+void RigidSurface<Degree>::move(const certificates::RigidMotion<PathDegree>& motion, double t0, double t1) {
+  static_assert(Degree == 2, "what turns moves on parabolas");
+  const PathControls<PathDegree> path(motion.path, t0, t1);
+  const auto origin = path.of_parabola();
+  const Vector3d half_turn = 0.5 * (t1 - t0) * motion.angular_velocity;
+  const auto begin = motion.rotation(t0), end = motion.rotation(t1);
+  const std::array<std::span<Vector3d>, 3> points{surface_.change_control_points(0), surface_.change_control_points(1),
+                                                  surface_.change_control_points(2)};
+  double farthest = 0;
+  for (std::size_t k = 0; k < offsets_.size(); ++k) {
+    const Vector3d at_begin = begin(offsets_[k]);
+    points[0][k] = origin[0] + at_begin;
+    points[1][k] = origin[1] + (at_begin + cross(half_turn, at_begin));
+    points[2][k] = origin[2] + end(offsets_[k]);
+    for (std::size_t i = 0; i < 3; ++i) farthest = std::max(farthest, points[i][k].cwiseAbs().maxCoeff());
+  }
+  const double angle = norm(motion.angular_velocity) * (t1 - t0);
+  const double turned = 2.0 / 81 * angle * angle * angle * reach_;
+  // A rotation errs by its bound times the sum of the coordinates, at most twice the length; the middle point has that
+  // of the first one, once more times half of the angle. Sums are rounded, and so is what is said of the angle.
+  const double rotation = std::max(begin.error(), end.error()) * 2 * reach_;
+  surface_.set_uncertainty(path.error +
+                           (turned + (1 + angle) * (rotation + 0x1p-50 * (farthest + reach_))) * (1 + 0x1p-40));
+  surface_.refit(t0, t1);
+}
+
 template class RigidSurface<1>;
 template class RigidSurface<2>;
+template void RigidSurface<2>::move(const certificates::RigidMotion<1>&, double, double);
+template void RigidSurface<2>::move(const certificates::RigidMotion<2>&, double, double);
 
 }  // namespace kds::collision

@@ -28,10 +28,16 @@ class BendingPieces {
     double begin, end;
   };
 
-  /// `keyframes`: times, in any order; `smaller`, `farthest`: units of length.
-  BendingPieces(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b,
+  /// `keyframes`: times, in any order; `smaller`, `farthest`: units of length; `turning`: how fast points of the two
+  /// go because they turn, at most, in units of length a second.
+  BendingPieces(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b, double turning,
                 std::vector<double> keyframes, double smaller, double farthest)
-      : times_(std::move(keyframes)), a_(a), b_(b), first_(smaller), farthest_(std::max(smaller, farthest)) {
+      : times_(std::move(keyframes)),
+        a_(a),
+        b_(b),
+        turning_(turning),
+        first_(smaller),
+        farthest_(std::max(smaller, farthest)) {
     const double start = std::max(a.start, b.start);
     std::erase_if(times_, [start](double time) { return !(time > start); });
     times_.push_back(start);
@@ -72,7 +78,7 @@ class BendingPieces {
   /// Between two keyframes: where times are cut finer than doubles are, or nearly.
   static constexpr double most_parts = 0x1p20;
 
-  double speed(double t) const { return norm(b_.velocity(t) - a_.velocity(t)); }
+  double speed(double t) const { return norm(b_.velocity(t) - a_.velocity(t)) + turning_; }
 
   /// From the last keyframe on: the time in which they go a way, at most; and the way at the begin of piece k.
   double time_of(double way) const {
@@ -98,6 +104,7 @@ class BendingPieces {
   std::vector<double> times_;
   const certificates::PointMotion<Degree>& a_;
   const certificates::PointMotion<Degree>& b_;
+  double turning_;
   double first_, farthest_;
   double speed_, acceleration_;
   int doublings_;

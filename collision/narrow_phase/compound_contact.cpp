@@ -1,11 +1,11 @@
 #include "collision/narrow_phase/compound_contact.hpp"
 
 #include "collision/body_motion.hpp"
-#include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/part_pairs.hpp"
 #include "collision/narrow_phase/piecewise_contact.hpp"
 #include "collision/narrow_phase/surface_gap.hpp"
+#include "collision/narrow_phase/surface_rate.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/turning_part_pairs.hpp"
 #include "collision/vectors.hpp"
@@ -18,6 +18,8 @@
 namespace kds::collision {
 namespace {
 
+using Eigen::Vector3d;
+
 template <class Motion>
 using PairsOf = std::conditional_t<turns<Motion>, TurningPartPairs<Motion::degree>, PartPairs<Motion::degree>>;
 
@@ -25,19 +27,17 @@ using PairsOf = std::conditional_t<turns<Motion>, TurningPartPairs<Motion::degre
 template <int Degree>
 bool parts_approach(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, const Contact& contact) {
   if (!bends(a.shape.shape) && !bends(b.shape.shape)) return approaching(contact, a, b);
-  const auto velocity = [&](const TranslatingShape<Degree>& body, const Feature& feature) -> Eigen::Vector3d {
-    const Eigen::Vector3d point = contact.point - body.motion.position(contact.time);
-    return body.motion.velocity(contact.time) +
-           surface_rate(body.shape, feature, point, contact.normal, contact.time).velocity;
-  };
-  return dot(contact.normal, velocity(b, contact.feature_b) - velocity(a, contact.feature_a)) < 0;
+  const Vector3d velocity_a = a.motion.velocity(contact.time) + surface_rate(a, contact, true).velocity;
+  const Vector3d velocity_b = b.motion.velocity(contact.time) + surface_rate(b, contact, false).velocity;
+  return dot(contact.normal, velocity_b - velocity_a) < 0;
 }
 /// The same of bodies that turn: faster than roundings can feign.
 template <int Degree>
 bool parts_approach(const MovingShape<certificates::RigidMotion<Degree>>& a,
                     const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {
   const PointRates<Degree> rates(a.motion, b.motion, contact.time);
-  return dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point);
+  const Vector3d of_surfaces = surface_rate(b, contact, false).velocity - surface_rate(a, contact, true).velocity;
+  return dot(contact.normal, rates.velocity(contact.point) + of_surfaces) < -rates.noise(contact.point);
 }
 
 /// How far two parts are apart, or how little they overlap, along the normal of a contact.
@@ -49,6 +49,7 @@ double parts_gap(const TranslatingShape<Degree>& a, const TranslatingShape<Degre
 template <int Degree>
 double parts_gap(const MovingShape<certificates::RigidMotion<Degree>>& a,
                  const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {
+  if (bends(a.shape.shape) || bends(b.shape.shape)) return 0;
   const auto placed = [&](const MovingShape<certificates::RigidMotion<Degree>>& body) {
     const Eigen::Quaterniond q = body.motion.restarted(contact.time).orientation;
     return place(body.shape.shape, Eigen::Quaterniond(Eigen::Vector4d(q.coeffs() / norm(q))));
@@ -133,9 +134,8 @@ double CompoundContact<Motion>::apart_until(const Body& a, const Body& b, double
 template <class Motion>
 bool CompoundContact<Motion>::in_contact(const Body& a, const Body& b, double t) {
   const PairsOf<Motion> pairs(a, b, t, t);
-  return std::any_of(pairs.all().begin(), pairs.all().end(), [&](const auto& pair) {
-    return PartTests<Motion>(a, b, *pair.a, *pair.b).in_contact(t);
-  });
+  return std::any_of(pairs.all().begin(), pairs.all().end(),
+                     [&](const auto& pair) { return PartTests<Motion>(a, b, *pair.a, *pair.b).in_contact(t); });
 }
 
 /// Where the contact of two parts ends others may be in contact: repeat until none is.

@@ -6,8 +6,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/piecewise_contact.hpp"
 
-#include <stdexcept>
-
 namespace kds::collision {
 
 /// How a half-space (a) and a shape touch: the normal leads out of the half-space, and the point is the middle of what
@@ -33,24 +31,8 @@ struct HalfSpacesContact {
   static Contact contact_at(const Body&, const Body&, double t, const FoundTouch&) { return {.time = t}; }
 };
 
-/// A half-space and a mesh that bends, which are not tested: worlds refuse to hold both, and all of these throw.
-template <int Degree>
-struct HalfSpaceAndBendingMesh {
-  using Body = TranslatingShape<Degree>;
-
-  [[noreturn]] static void refuse() {
-    throw std::invalid_argument("a half-space and a mesh that bends are not tested for contact");
-  }
-  static double first_contact(const Body&, const Body&, double, double, ContactMode, FoundTouch*) { refuse(); }
-  static double apart_until(const Body&, const Body&, double, double, PairMemory&) { refuse(); }
-  static bool in_contact(const Body&, const Body&, double) { refuse(); }
-  static double first_separation(const Body&, const Body&, double, double) { refuse(); }
-  static Contact contact_at(const Body&, const Body&, double, const FoundTouch&) { refuse(); }
-};
-
-#define KDS_DECLARE(degree)                                                                                     \
-  extern template Contact half_space_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, \
-                                             double);
+#define KDS_DECLARE(degree) \
+  extern template Contact half_space_contact(const TranslatingShape<degree>&, const TranslatingShape<degree>&, double);
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
 #undef KDS_DECLARE
 

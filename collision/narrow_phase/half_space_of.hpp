@@ -12,16 +12,22 @@
 
 namespace kds::collision {
 
+/// The shape as its body is turned.
+template <class Motion>
+PlacedShape placed_plane(const PlacedShape& shape, const Motion& motion) {
+  if constexpr (turns<Motion>) {
+    const Eigen::Vector4d q = motion.orientation.coeffs() / norm(motion.orientation);
+    return place(shape.shape, Eigen::Quaterniond(q));
+  } else {
+    return shape;
+  }
+}
+
 /// The half-space in world orientation: a body of a world that turns its bodies has the orientation of its motion, and
 /// keeps it (checked_pieces.hpp). Precondition: the shape is one.
 template <class Motion>
 HalfSpace half_space_of(const PlacedShape& shape, const Motion& motion) {
-  if constexpr (turns<Motion>) {
-    const Eigen::Vector4d q = motion.orientation.coeffs() / norm(motion.orientation);
-    return placed_half_space(place(shape.shape, Eigen::Quaterniond(q)));
-  } else {
-    return placed_half_space(shape);
-  }
+  return placed_half_space(placed_plane(shape, motion));
 }
 
 }  // namespace kds::collision

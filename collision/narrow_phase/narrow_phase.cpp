@@ -6,6 +6,7 @@
 #include "collision/narrow_phase/capsule_contact.hpp"
 #include "collision/narrow_phase/compound_contact.hpp"
 #include "collision/narrow_phase/convex_contact.hpp"
+#include "collision/narrow_phase/half_space_and_bending_mesh.hpp"
 #include "collision/narrow_phase/half_space_contact.hpp"
 #include "collision/narrow_phase/hull_contact.hpp"
 #include "collision/narrow_phase/mesh_and_hull.hpp"
@@ -32,17 +33,18 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
   table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
   table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::PointMotion<Degree>>{});
-  table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Degree>{});
   using CompoundTests = CompoundContact<certificates::PointMotion<Degree>>;
   table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(CompoundTests{});
   if constexpr (Degree <= 2) {
-    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(BendingContact<Degree>{});
+    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(
+        BendingContact<certificates::PointMotion<Degree>>{});
+    table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<certificates::PointMotion<Degree>>{});
     table.template add<Compound, BendingMesh>(CompoundTests{});
   }
   return table;
 }
 
-/// Of bodies that turn. Kinds without a row are refused (can_move_by).
+/// Of bodies that turn. What bends keeps its orientation.
 template <int Degree>
 constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
@@ -53,8 +55,12 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   table.template add<HalfSpace, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningContact<Degree>{});
   table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::RigidMotion<Degree>>{});
-  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(
-      CompoundContact<certificates::RigidMotion<Degree>>{});
+  using CompoundTests = CompoundContact<certificates::RigidMotion<Degree>>;
+  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(CompoundTests{});
+  table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(
+      BendingContact<certificates::RigidMotion<Degree>>{});
+  table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<certificates::RigidMotion<Degree>>{});
+  table.template add<Compound, BendingMesh>(CompoundTests{});
   return table;
 }
 
@@ -172,7 +178,7 @@ Contact contact_at(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 }
 
 #define KDS_INSTANTIATE(motion)                                                                                       \
-  static_assert(turns<motion> || motion::degree > 2 || table<motion>.complete());                                     \
+  static_assert(motion::degree > 2 || table<motion>.complete());                                                      \
   template const PairTests<motion>& pair_tests(const PlacedShape&, const PlacedShape&);                               \
   template bool can_move_by<motion>(const Shape&);                                                                    \
   template double first_contact(const MovingShape<motion>&, const MovingShape<motion>&, double, double, ContactMode,  \

@@ -368,7 +368,7 @@ void Domain<Motion>::moved(World&, BodyId id) {
 }
 
 #define KDS_INSTANTIATE(motion) template class Domain<motion>;
-KDS_FOR_EACH_DIVISIBLE(KDS_INSTANTIATE)
+KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -177,7 +177,7 @@ class Domain final : private BasicWorldListener<Motion> {
 };
 
 #define KDS_DECLARE(motion) extern template class Domain<motion>;
-KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

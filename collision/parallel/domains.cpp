@@ -354,7 +354,7 @@ WorldCounters Domains<Motion>::work() const {
 }
 
 #define KDS_INSTANTIATE(motion) template class Domains<motion>;
-KDS_FOR_EACH_DIVISIBLE(KDS_INSTANTIATE)
+KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -158,7 +158,7 @@ class Domains {
 };
 
 #define KDS_DECLARE(motion) extern template class Domains<motion>;
-KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -124,7 +124,7 @@ template <int Degree>
 using ParallelTurningWorld = BasicParallelWorld<certificates::RigidMotion<Degree>>;
 
 #define KDS_DECLARE(motion) extern template class BasicParallelWorld<motion>;
-KDS_FOR_ALL_DIVISIBLE(KDS_DECLARE)
+KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

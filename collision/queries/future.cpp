@@ -101,7 +101,7 @@ std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedSha
                                 std::to_string(world.now()) + ")");
   }
   if constexpr (turns<Motion>) {
-    require_no_spin_of_half_space(shape.shape, motion, "next_contact: motion");
+    require_no_spin(shape.shape, motion, "next_contact: motion");
   }
   return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
                    [&](BodyId id) { return detail::accepts(filter, id); });

@@ -25,19 +25,20 @@ std::array<double, 2> ends_along(Keyframes keyframes, const Eigen::Matrix3d& rot
   return ends;
 }
 
-void put_bounds(Keyframes keyframes, const PlacedShape& placed, double margin, Eigen::Vector3d& low,
+void put_bounds(Keyframes keyframes, const Eigen::Matrix3d& rotation, double margin, Eigen::Vector3d& low,
                 Eigen::Vector3d& high) {
   for (int d = 0; d < 3; ++d) {
-    const auto ends = ends_along(keyframes, placed.rotation, Eigen::Vector3d::Unit(d));
+    const auto ends = ends_along(keyframes, rotation, Eigen::Vector3d::Unit(d));
     low[d] = ends[0] - margin;
     high[d] = ends[1] + margin;
   }
 }
 
-std::array<double, 2> extent_of(Keyframes keyframes, const PlacedShape& placed, const Eigen::Vector3d& direction) {
+std::array<double, 2> extent_of(Keyframes keyframes, const Eigen::Matrix3d& rotation, double bounding_radius,
+                                const Eigen::Vector3d& direction) {
   const double length = norm(direction) * (1 + detail::rotation_margin);
-  const auto ends = ends_along(keyframes, placed.rotation, direction);
-  const double margin = (box_margin + detail::rotation_margin) * placed.bounding_radius * length;
+  const auto ends = ends_along(keyframes, rotation, direction);
+  const double margin = (box_margin + detail::rotation_margin) * bounding_radius * length;
   return {ends[0] - margin, ends[1] + margin};
 }
 
@@ -53,30 +54,31 @@ Keyframes keyframes_at(const MeshScript& script, double t) {
 
 }  // namespace
 
-BendingBounds bending_bounds(const PlacedShape& placed, double t) {
+BendingBounds bending_bounds(const PlacedShape& placed, const Eigen::Matrix3d& rotation, double t) {
   const MeshScript& script = script_of(placed);
   const std::size_t next = script.keyframes_until(t);
   BendingBounds bounds{{}, {}, std::numeric_limits<double>::infinity()};
   if (next < script.keyframes().size()) bounds.until = script.keyframes()[next].time;
-  put_bounds(keyframes_at(script, t), placed, box_margin * script.bounding_radius(), bounds.low, bounds.high);
+  put_bounds(keyframes_at(script, t), rotation, box_margin * script.bounding_radius(), bounds.low, bounds.high);
   return bounds;
 }
 
-std::array<double, 2> bending_extent(const PlacedShape& placed, const Eigen::Vector3d& direction, double t) {
-  return extent_of(keyframes_at(script_of(placed), t), placed, direction);
+std::array<double, 2> bending_extent(const PlacedShape& placed, const Eigen::Matrix3d& rotation,
+                                     const Eigen::Vector3d& direction, double t) {
+  return extent_of(keyframes_at(script_of(placed), t), rotation, placed.bounding_radius, direction);
 }
 
 void detail::ShapeKind<BendingMesh>::place(const BendingMesh& shape, PlacedShape& placed) {
   if (!shape.script) throw std::invalid_argument("script: is missing");
   const double radius = shape.script->bounding_radius();
   require_size(radius, "script: the radius");
-  put_bounds(shape.script->keyframes(), placed, box_margin * radius, placed.low, placed.high);
+  put_bounds(shape.script->keyframes(), placed.rotation, box_margin * radius, placed.low, placed.high);
   placed.bounding_radius = radius * (1 + box_margin);
 }
 
 std::array<double, 2> detail::ShapeKind<BendingMesh>::extent(const BendingMesh& shape, const PlacedShape& placed,
                                                              const Eigen::Vector3d& direction) {
-  return extent_of(shape.script->keyframes(), placed, direction);
+  return extent_of(shape.script->keyframes(), placed.rotation, placed.bounding_radius, direction);
 }
 
 }  // namespace kds::collision

@@ -24,10 +24,11 @@ struct BendingBounds {
   double until;  ///< s: the next keyframe; infinity after the last
 };
 
-/// From t on. Precondition, here and below: the shape is a BendingMesh.
-BendingBounds bending_bounds(const PlacedShape& placed, double t);
+/// From t on, turned by a rotation. Precondition, here and below: the shape is a BendingMesh.
+BendingBounds bending_bounds(const PlacedShape& placed, const Eigen::Matrix3d& rotation, double t);
 /// What extent() tells of all keyframes.
-std::array<double, 2> bending_extent(const PlacedShape& placed, const Eigen::Vector3d& direction, double t);
+std::array<double, 2> bending_extent(const PlacedShape& placed, const Eigen::Matrix3d& rotation,
+                                     const Eigen::Vector3d& direction, double t);
 
 namespace detail {
 

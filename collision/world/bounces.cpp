@@ -18,9 +18,7 @@ double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) c
   const auto& path_b = bodies_.path(b);
   const double t = contact.time;
   const double rate = dot(contact.normal, path_b.velocity(t) - path_a.velocity(t));
-  if (bends(a, b))
-    return rate +
-           dot(contact.normal, surface_rate(b, contact, false).velocity - surface_rate(a, contact, true).velocity);
+  if (bends(a, b)) return rate + dot(contact.normal, surface_velocity(a, b, contact));
   if constexpr (Motion::degree >= 3) {
     if (rate != 0) return rate;
     const auto at_a = path_a.restarted(t), at_b = path_b.restarted(t);
@@ -151,6 +149,29 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
   }
   begin_rest(a, b, contact);
   return true;
+}
+
+/// The mesh is fixed, so the other body leaves it with the velocity of the surface at the contact and the rebound.
+template <class Motion>
+void Engine<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact,
+                                        std::uint64_t burst) requires(!turns<Motion>) {
+  const BodySlot free = bodies_.fixed(a) ? b : a;
+  const double rate = parting(a, b, contact);
+  const Vector3d away = free == a ? Vector3d(-contact.normal) : contact.normal;
+  const double change = std::max(rebound_off_surface(a, b, contact, -rate, burst) - rate, 0.0);
+  // Even a body that parts already begins a new piece: from here on what is near is looked at anew.
+  Motion motion = bodies_.motion(free).restarted(contact.time);
+  if (resting_.rests(free)) {
+    motion.coefficients[1] = resting_.drive(free, away, dot(away, motion.coefficients[1]) + change);
+  } else {
+    Vector3d none = Vector3d::Zero();
+    change_relative_velocity(none, motion.coefficients[1], away, change, 0, bodies_[free].inverse_mass);
+  }
+  resting_.leave(free);
+  ++counters_.motion_updates;
+  set_motion(free, motion, false);
+  resting_.disturb(free);
+  resting_.solve();
 }
 
 /// A contact in a cluster. Whether the two rest on each other from now on.

@@ -42,13 +42,16 @@ void require_steady_clock(const certificates::RigidMotion<Degree>& motion, doubl
                               "doubles of the clock");
 }
 
-/// Half-spaces keep their orientation: what one of them sweeps while it turns has no bounds. Throws
-/// std::invalid_argument, naming the motion by `name`, if this is one that would turn.
+/// Whether bodies of a shape keep their orientation: what a half-space sweeps while it turns has no bounds, and the
+/// vertices of a mesh that bends say themselves how it turns.
+inline bool keeps_orientation(const Shape& shape) { return unbounded(shape) || bends(shape); }
+
+/// Throws std::invalid_argument, naming the motion by `name`, if it would turn a body that keeps its orientation.
 template <int Degree>
-void require_no_spin_of_half_space(const Shape& shape, const certificates::RigidMotion<Degree>& motion,
-                                   const std::string& name) {
-  if (!unbounded(shape) || motion.angular_velocity.isZero(0)) return;
-  throw std::invalid_argument(name + ".angular_velocity: a half-space does not turn");
+void require_no_spin(const Shape& shape, const certificates::RigidMotion<Degree>& motion, const std::string& name) {
+  if (!keeps_orientation(shape) || motion.angular_velocity.isZero(0)) return;
+  throw std::invalid_argument(name + ".angular_velocity: a " + kind_name(shape) + " does not turn" +
+                              (bends(shape) ? ": its vertices say how it moves" : ""));
 }
 
 }  // namespace kds::collision

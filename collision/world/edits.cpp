@@ -38,12 +38,11 @@ void validate(const BasicBodyDescription<Motion>& description) {
   if (!description.fixed) require_size(description.mass, "mass");
   if (!can_move_by<Motion>(description.shape)) {
     const std::string name = std::string("shape: a ") + kind_name(description.shape);
-    if constexpr (turns<Motion>) fail(name + " cannot turn: balls, boxes, capsules, hulls, meshes and compounds can");
     fail(name + " cannot move on paths of degree " + std::to_string(Motion::degree) + ": at most 2");
   }
   if constexpr (turns<Motion>) {
     for (std::size_t i = 0; i < description.motion.size(); ++i) {
-      require_no_spin_of_half_space(description.shape, description.motion[i], "motion[" + std::to_string(i) + "]");
+      require_no_spin(description.shape, description.motion[i], "motion[" + std::to_string(i) + "]");
     }
     if (description.orientation.coeffs() != Eigen::Quaterniond::Identity().coeffs()) {
       fail("orientation: a body that turns has that of its motion");
@@ -123,8 +122,9 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
   if (bodies_.attachments().owner(owner) != no_body) {
     fail("attached_to: body " + std::to_string(*description.attached_to) + " is attached to another itself");
   }
-  if (turns<Motion> && unbounded(description.shape)) {
-    fail("attached_to: a half-space does not turn, as body " + std::to_string(*description.attached_to) + " may");
+  if (turns<Motion> && keeps_orientation(description.shape)) {
+    fail(std::string("attached_to: a ") + kind_name(description.shape) + " does not turn, as body " +
+         std::to_string(*description.attached_to) + " may");
   }
   Description alone = description;
   alone.attached_to.reset();
@@ -133,19 +133,6 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
   scripts_.clear(body_slot(id));  // Its owner's begins both.
   bodies_.attach(body_slot(id), owner);
   return id;
-}
-
-/// Meshes that bend are not tested with half-spaces, so a world has only one of the two kinds.
-template <class Motion>
-void Engine<Motion>::require_tests_of(const Shape& shape) const {
-  const bool is_unbounded = unbounded(shape);
-  if (!is_unbounded && !collision::bends(shape)) return;
-  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (!bodies_.alive(slot) || !(is_unbounded ? bends(slot) : bodies_.unbounded(slot))) continue;
-    throw std::invalid_argument(std::string("shape: a ") + kind_name(shape) + " and a " +
-                                kind_name(bodies_.shape(slot).shape) + ", body " + std::to_string(bodies_.id_of(slot)) +
-                                ", cannot be in one world");
-  }
 }
 
 template <class Motion>
@@ -157,7 +144,6 @@ BodyId Engine<Motion>::add_body(const Description& description) {
       !description.fixed) {
     throw std::invalid_argument("fixed: contacts do not move a mesh that bends: it has to be fixed, or a sensor");
   }
-  require_tests_of(description.shape);
   std::optional<PrincipalInertia> principal;  // of one that precesses
   if constexpr (turns<Motion>) {
     // Nothing else changes how a body turns.

@@ -4,8 +4,8 @@
 #include "collision/body_description.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
-#include "collision/narrow_phase/bending_contact.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/surface_rate.hpp"
 #include "collision/profile.hpp"
 #include "collision/response/free_rotation.hpp"
 #include "collision/response/turning_impulse.hpp"
@@ -257,7 +257,6 @@ class Engine final : private RestingListener<BodyMotionType> {
   void report_resting(const Reports::Report& event, const PairEvent& pair);
 
   // edits.cpp: bodies that are added and removed
-  void require_tests_of(const Shape& shape) const;
   BodyId add_attached(const Description& description);
   BodySlot put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                const std::optional<PrincipalInertia>& principal);
@@ -310,12 +309,16 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
 
+  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
+
   // bending_bounces.cpp: of meshes that bend
   bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
   bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
-  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const requires(!turns<Motion>);
-  double least_rebound(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>);
-  void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
+  SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const;
+  /// That of b less that of a.
+  Eigen::Vector3d surface_velocity(BodySlot a, BodySlot b, const Contact& contact) const;
+  double rebound_off_surface(BodySlot a, BodySlot b, const Contact& contact, double approach,
+                             std::uint64_t burst) const;
 
   // turning/turning_bounces.cpp: of bodies that turn
   double parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>);
@@ -325,7 +328,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
   Mobility mobility(BodySlot slot) const requires(turns<Motion>);
   Motion met(BodySlot slot, double t) requires(turns<Motion>);
-  TurningImpact<Motion> impact(BodySlot a, BodySlot b, const Contact& contact, bool often) requires(turns<Motion>);
+  TurningImpact<Motion> impact(BodySlot a, BodySlot b, const Contact& contact,
+                               std::uint64_t burst) requires(turns<Motion>);
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);
 

@@ -64,14 +64,15 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
   change_or_fail([&] { scripts_.append(slot, pieces); });
 }
 
-/// Of a half-space, and of a body that precesses.
+/// Of a body that keeps its orientation, and of one that precesses.
 template <class Motion>
 void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {
-    if (!tumbling_.has(slot) && !bodies_.unbounded(slot)) return;
+    const bool keeps = bodies_[slot].shape && keeps_orientation(bodies_[slot].shape->shape);
+    if (!tumbling_.has(slot) && !keeps) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       const std::string one = name + (pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]");
-      if (bodies_.unbounded(slot)) require_no_spin_of_half_space(bodies_[slot].shape->shape, pieces[i], one);
+      if (keeps) require_no_spin(bodies_[slot].shape->shape, pieces[i], one);
       if (tumbling_.has(slot)) require_steady_clock(pieces[i], clock_.now, one);
     }
   }

@@ -1,5 +1,6 @@
 #include "collision/world/self_contacts.hpp"
 
+#include "collision/narrow_phase/kept_rotation.hpp"
 #include "collision/narrow_phase/self_contact.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world/bodies_image.hpp"
@@ -57,8 +58,9 @@ template <class Motion>
 Contact SelfContacts<Motion>::contact(BodySlot slot) const {
   const PlacedShape& shape = *bodies_[slot].shape;
   Contact contact = self_contact_at(script_of(shape), clock_.now);
-  contact.point = bodies_.path(slot).position(clock_.now) + placed_vertex(shape.rotation, 1, contact.point);
-  contact.normal = placed_vertex(shape.rotation, 1, contact.normal);
+  const Eigen::Matrix3d rotation = kept_rotation(shape, bodies_.motion(slot));
+  contact.point = bodies_.path(slot).position(clock_.now) + placed_vertex(rotation, 1, contact.point);
+  contact.normal = placed_vertex(rotation, 1, contact.normal);
   return contact;
 }
 

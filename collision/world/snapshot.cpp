@@ -2,6 +2,7 @@
 #include "kds/framework/snapshot.hpp"
 #include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
+#include "collision/world/checked_pieces.hpp"
 #include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
@@ -73,16 +74,17 @@ struct Engine<Motion>::Image {
     archive(scripts, timers, tumbling, pairs, self_contacts, resting, pending);
   }
 
-  /// Throws std::runtime_error if one turns, or will, or may with the body that it is attached to.
-  void check_half_spaces() const {
+  /// Throws std::runtime_error if a body turns that keeps its orientation, or will, or may with the body that it is
+  /// attached to.
+  void check_orientations() const {
     if constexpr (turns<Motion>) {
       const auto still = [](const Motion& piece) { return piece.angular_velocity.isZero(0); };
       for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
-        if (!bodies.alive(slot) || !unbounded(bodies.bodies[slot].placed.shape)) continue;
+        if (!bodies.alive(slot) || !keeps_orientation(bodies.bodies[slot].placed.shape)) continue;
         const std::vector<Motion> none, &later = slot < scripts.of.size() ? scripts.of[slot] : none;
         image::require(still(bodies.bodies[slot].motion) && std::all_of(later.begin(), later.end(), still) &&
                            bodies.owner(slot) == no_body,
-                       "bodies", slot, "it is a half-space that turns");
+                       "bodies", slot, "it keeps its orientation, and turns");
       }
     }
   }
@@ -97,7 +99,7 @@ struct Engine<Motion>::Image {
     bodies.check(now);
     scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
     timers.check(now);
-    check_half_spaces();
+    check_orientations();
     tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/half_space_of.hpp"
+#include "collision/narrow_phase/kept_rotation.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/raised_flag.hpp"
@@ -88,7 +89,7 @@ void Volumes<Motion>::note_shape(BodySlot slot) {
   const detail::Body<Motion>& b = bodies_[slot];
   if (b.shape && collision::bends(b.shape->shape) && b.volume == BoundingVolume::shape && !from_caller(slot)) {
     if (bent_.size() <= slot) bent_.resize(slot + std::size_t{1});
-    bent_[slot] = bending_bounds(*b.shape, clock_.now);
+    bent_[slot] = bending_bounds(*b.shape, kept_rotation(*b.shape, bodies_.motion(slot)), clock_.now);
   }
   if (!directions_.empty()) place_extents(slot);
 }
@@ -165,7 +166,9 @@ void Volumes<Motion>::place_extents(BodySlot slot) {
       const double radius = b.bounding_radius * norm(direction) * (1 + 0x1p-48);
       half_extents = {-radius, radius};
     } else {
-      half_extents = bends(slot) ? bending_extent(*b.shape, direction, clock_.now) : extent(*b.shape, direction);
+      half_extents =
+          bends(slot) ? bending_extent(*b.shape, kept_rotation(*b.shape, bodies_.motion(slot)), direction, clock_.now)
+                      : extent(*b.shape, direction);
     }
   }
 }
@@ -231,9 +234,14 @@ bool Volumes<Motion>::meets(BodySlot slot, const StaticBox& box, double t) const
 template <class Motion>
 StaticBox Volumes<Motion>::swept(BodySlot slot, double from, double until) const {
   if (!bends(slot)) return bounded_swept_box(box_or_ball(slot), from, until);
+  // Around all keyframes.
   const PlacedShape& shape = *bodies_[slot].shape;
-  return bounded_swept_box(grown(slot, box_around<Motion::degree>(bodies_.path(slot), shape.low, shape.high)), from,
-                           until);
+  Eigen::Vector3d low = shape.low, high = shape.high;
+  if constexpr (turns<Motion>) {  // in any orientation
+    high = Eigen::Vector3d::Constant(shape.bounding_radius);
+    low = -high;
+  }
+  return bounded_swept_box(grown(slot, box_around<Motion::degree>(bodies_.path(slot), low, high)), from, until);
 }
 
 /// Of its centre.

@@ -3,6 +3,9 @@
 #include "collision/deforming/deforming_mesh.hpp"
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/deforming/surface_contact.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
@@ -13,6 +16,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -102,6 +106,48 @@ void measure_rings(std::ofstream& csv, std::uint32_t around, std::uint32_t acros
   char line[120];
   std::snprintf(line, sizeof line, "%u,%s,%.1f,%.1f,%.1f,%d\n", 2 * around * across, name, median(refits),
                 median(times), worst, contacts);
+  benchmarks::tell(csv, line);
+}
+
+/// The same of one that bends and one that keeps its shape and turns by an angle on its way, as worlds test them: until
+/// the first contact, or until they have passed.
+void measure_turning(std::ofstream& csv, std::uint32_t around, std::uint32_t across, double radians, int count) {
+  const auto ring = samples::torus(around, across);
+  const std::vector<Mesh::Triangle> triangles(ring->triangles().begin(), ring->triangles().end());
+  Random random(1);
+  std::vector<double> times;
+  int contacts = 0;
+  for (int i = 0; i < count; ++i) {
+    const Vector3d from = vector(random, 1).normalized();
+    const BentRing bent(random, *ring, -1.25 * from, vector(random, 0.2));
+    const auto script = std::make_shared<const MeshScript>(
+        std::vector<MeshScript::Keyframe>{{0, bent.begin}, {1, bent.end}}, triangles);
+    const PlacedShape bends = place(BendingMesh{script}, Eigen::Quaterniond::Identity());
+    const PlacedShape turns = place(MeshShape{ring}, Eigen::Quaterniond::Identity());
+    using Turning = certificates::RigidMotion<1>;
+    const Turning still{certificates::PointMotion<1>::line(Vector3d::Zero(), Vector3d::Zero())};
+    Turning motion{certificates::PointMotion<1>::line(1.25 * from, vector(random, 0.2) - 1.25 * from)};
+    motion.angular_velocity = radians * vector(random, 1).normalized();
+    double best = 1e9;
+    bool found = false;
+    for (int round = 0; round < 3; ++round) {
+      const double start = benchmarks::thread_seconds();
+      const MovingShape<Turning> a{bends, still}, b{turns, motion};
+      double time = 0;  // first_contact() looks so far as the world would
+      for (bool exact = false; !exact && time < 1;) {
+        const ContactEstimate next = certified_first_contact(a, b, time, 1, ContactMode::transparent);
+        time = next.time, exact = next.exact;
+      }
+      found = time <= 1;
+      best = std::min(best, benchmarks::thread_seconds() - start);
+    }
+    times.push_back(best);
+    contacts += found;
+  }
+  std::sort(times.begin(), times.end());
+  char line[120];
+  std::snprintf(line, sizeof line, "%u,turns by %g rad,,%.1f,%.1f,%d\n", 2 * around * across, radians,
+                1e6 * times[times.size() / 2], 1e6 * times.back(), contacts);
   benchmarks::tell(csv, line);
 }
 
@@ -196,6 +242,7 @@ int main(int argc, char** argv) {
   for (const std::uint32_t around : {8u, 80u}) {
     const std::uint32_t across = around == 8 ? 4 : 38;
     for (const Kind kind : {Kind::free, Kind::linked, Kind::itself}) measure_rings(csv, around, across, kind, count);
+    for (const double radians : {0.0, 1.0, 10.0}) measure_turning(csv, around, across, radians, count);
   }
   std::ofstream cloth = benchmarks::open_csv(folder, "deforming-cloth.csv");
   benchmarks::tell(cloth, "triangles,steps,boxes_us,ball_us,itself_us,steps_per_second,with_ball,with_itself\n");

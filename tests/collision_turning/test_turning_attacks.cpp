@@ -242,7 +242,7 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   refused({.shape = Sphere{1}, .motion = {still}, .inertia = tensor(1, 1, 0x1p-41)}, "inertia");  // too thin
   refused({.shape = Sphere{1}, .orientation = Quaterniond(0, 1, 0, 0), .motion = {still}}, "orientation");
   refused({.shape = Capsule{}, .motion = {still}}, "radius: must be > 0");
-  refused({.shape = BendingMesh{}, .motion = {still}}, "shape: a bending mesh cannot turn: balls, boxes, capsules");
+  refused({.shape = BendingMesh{}, .motion = {still}}, "fixed: contacts do not move a mesh that bends");
   // A cube whose corners are off its centre turns about the wrong point, unless its inertia is given as of this point.
   const auto cube_at = [](double x) {
     const auto cube = samples::cuboid();

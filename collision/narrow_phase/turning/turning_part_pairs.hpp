@@ -32,7 +32,8 @@ struct BallOfPart {
 };
 
 /// The pairs of parts of two bodies that turn which may penetrate each other at some time from now to the horizon, in
-/// the order of the parts of a, then of b. (See parts_of() of part_pairs.hpp.) With half-spaces these are all.
+/// the order of the parts of a, then of b. (See parts_of() of part_pairs.hpp.) With half-spaces and meshes that bend
+/// these are all.
 ///
 /// Before the balls around the bodies meet no parts do. From then on the balls around two parts are followed along the
 /// direction between their centres, which stays as it is: the way between the bodies is a polynomial, a centre is
@@ -46,7 +47,8 @@ class TurningPartPairs : public ListOfPartPairs {
   using Body = MovingShape<certificates::RigidMotion<Degree>>;
 
   TurningPartPairs(const Body& a, const Body& b, double now, double horizon) {
-    if (unbounded(a.shape.shape) || unbounded(b.shape.shape)) {
+    const auto any_time = [](const PlacedShape& shape) { return unbounded(shape.shape) || bends(shape.shape); };
+    if (any_time(a.shape) || any_time(b.shape)) {
       for (const PlacedShape& part_a : parts_of(a.shape)) {
         for (const PlacedShape& part_b : parts_of(b.shape)) pairs_.push_back({&part_a, &part_b, now, never});
       }
@@ -108,8 +110,8 @@ class TurningPartPairs : public ListOfPartPairs {
     const double rate = dot(n, velocity) - frame.rate_error - rounding * (norm(frame.way.rate) + turning);
     const double inward = frame.rate_a * frame.rate_a * a.reach + frame.rate_b * frame.rate_b * b.reach;
     const double bend = dot(n, frame.way.bend) - rounding * norm(frame.way.bend) - (1 + rounding) * inward;
-    const double covered = radii + revolving_reach(a, n, frame.spin_a) + revolving_reach(b, -n, frame.spin_b) +
-                           rounding * lengths;
+    const double covered =
+        radii + revolving_reach(a, n, frame.spin_a) + revolving_reach(b, -n, frame.spin_b) + rounding * lengths;
     return std::max(certificates::positive_for(gap, rate, 0.5 * bend), revolving_apart_for(frame, n, covered));
   }
 };

@@ -1,4 +1,4 @@
-// How bodies that turn bounce off each other and off walls.
+// How bodies that turn bounce off each other, off meshes that bend, and off walls.
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/response/turning_impulse.hpp"
@@ -17,11 +17,20 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
+namespace {
+
+void give_impulse(RigidVelocity& body, const Mobility& mobility, const Vector3d& arm, const Vector3d& impulse) {
+  body.velocity += mobility.inverse_mass * impulse;
+  body.angular_velocity += mobility.turned_by(cross(arm, impulse));
+}
+
+}  // namespace
+
 /// At the point of contact. Roundings count as nothing.
 template <class Motion>
 double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
   const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
-  const double rate = dot(contact.normal, rates.velocity(contact.point));
+  const double rate = dot(contact.normal, rates.velocity(contact.point) + surface_velocity(a, b, contact));
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
 }
 
@@ -33,17 +42,20 @@ double Engine<Motion>::rebound(double approach, double pressed, double restituti
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
 
-/// What an impulse makes of two bodies that meet; nothing where they do not approach.
+/// What an impulse makes of two bodies that meet; nothing where they do not approach, unless one of them bends: what is
+/// within the tolerance of that begins a new piece, and leaves it.
 template <class Motion>
 TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Contact& contact,
-                                             bool often) requires(turns<Motion>) {
+                                             std::uint64_t burst) requires(turns<Motion>) {
+  const bool often = burst > options_.zeno.contacts;
   TurningImpact<Motion> result{met(a, contact.time), met(b, contact.time)};
   Motion& motion_a = result.a;
   Motion& motion_b = result.b;
   const Vector3d& n = contact.normal;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
-  double approach = -dot(n, rates.velocity(contact.point));
-  result.approach = approach > 0;
+  const bool bending = bends(a, b);
+  double approach = -dot(n, rates.velocity(contact.point) + surface_velocity(a, b, contact));
+  result.approach = approach > 0 || bending;
   if (!result.approach) return result;
   // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
@@ -67,6 +79,11 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
+  if (bends(a)) velocity_a.velocity += surface_rate(a, contact, true).velocity;
+  if (bends(b)) velocity_b.velocity += surface_rate(b, contact, false).velocity;
+  const auto leaves_with = [&](double approaches) {
+    return bending ? rebound_off_surface(a, b, contact, approaches, burst) : rebound(approaches, pressed, restitution);
+  };
   const auto mobility_of = [&](BodySlot slot) { return resting_.carries(slot) ? Mobility::fixed() : mobility(slot); };
   const Mobility of_a = mobility_of(a), of_b = mobility_of(b);
   // Of two bodies the lower counts, as of restitutions.
@@ -82,15 +99,24 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   const double rolling = often ? 0 : std::min(bodies_[a].rolling_friction, bodies_[b].rolling_friction);
   Vector3d couple = Vector3d::Zero();
   if (rolling > 0) {
-    const double change = approach + rebound(approach, pressed, restitution);
+    const double change = approach + leaves_with(approach);
     couple = brake_turning(velocity_a, velocity_b, of_a, of_b, arms, rolling * push_for(change, of_a, of_b, arms));
     approach = -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
                            (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
   }
-  surfaces.restitution = rebound(approach, pressed, restitution) / approach;
-  result.impulse = collide(velocity_a, velocity_b, of_a, of_b, arms, surfaces).impulse;
-  motion_a.path.coefficients[1] = velocity_a.velocity, motion_a.angular_velocity = velocity_a.angular_velocity;
-  motion_b.path.coefficients[1] = velocity_b.velocity, motion_b.angular_velocity = velocity_b.angular_velocity;
+  if (approach > 0) {
+    surfaces.restitution = leaves_with(approach) / approach;
+    result.impulse = collide(velocity_a, velocity_b, of_a, of_b, arms, surfaces).impulse;
+  } else {
+    const double change = std::max(leaves_with(approach) + approach, 0.0);
+    result.impulse = push_for(change, of_a, of_b, arms) * n;
+    give_impulse(velocity_a, of_a, arms.a, -result.impulse), give_impulse(velocity_b, of_b, arms.b, result.impulse);
+  }
+  const auto take_over = [&](BodySlot slot, const RigidVelocity& velocity, Motion& motion) {
+    if (!bends(slot))
+      motion.path.coefficients[1] = velocity.velocity, motion.angular_velocity = velocity.angular_velocity;
+  };
+  take_over(a, velocity_a, motion_a), take_over(b, velocity_b, motion_b);
   result.turn_a = -cross(arms.a, result.impulse) - couple;
   result.turn_b = cross(arms.b, result.impulse) + couple;
   return result;
@@ -106,13 +132,12 @@ Mobility Engine<Motion>::mobility(BodySlot slot) const requires(turns<Motion>) {
 template <class Motion>
 bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
                              std::uint64_t burst) requires(turns<Motion>) {
-  const bool often = burst > options_.zeno.contacts;
   const bool may_wake = resting_.meet(a, b);
-  TurningImpact<Motion> hit = impact(a, b, contact, often);
+  TurningImpact<Motion> hit = impact(a, b, contact, burst);
   if (may_wake && hit.approach) {  // What rests wakes only where the impulse would move it.
     const auto mobility_of = [this](BodySlot slot) { return mobility(slot); };
     const bool woke = resting_.strike(a, hit.turn_a, b, hit.turn_b, hit.impulse, mobility_of);
-    if (woke) hit = impact(a, b, contact, often);
+    if (woke) hit = impact(a, b, contact, burst);
   }
   auto& [motion_a, motion_b, impulse, turn_a, turn_b, approach] = hit;
   const auto both = {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}};
@@ -137,6 +162,7 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
+  if (bends(a, b)) return false;  // Nothing rests on what bends.
   const bool rests = resting_.comes_to_rest(a, b, contact);
   counters_.rebounds_suppressed += rests;
   return rests;
@@ -161,7 +187,8 @@ void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion&
   if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
-    return dot(contact.normal, PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point));
+    const Vector3d of_bodies = PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point);
+    return dot(contact.normal, of_bodies + surface_velocity(a, b, contact));
   };
   std::optional<RotationPiece> piece_a, piece_b;
   Motion back_a = motion_a, back_b = motion_b;

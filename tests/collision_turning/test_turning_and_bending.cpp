@@ -1,0 +1,414 @@
+// Bodies that turn and meshes that bend in one world.
+#include "collision/deforming/rigid_surface.hpp"
+#include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/compound.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/world.hpp"
+#include "kds/framework/snapshot.hpp"
+#include "tests/collision/deforming/bowls.hpp"
+#include "tests/collision_turning/half_space_scenes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace test_turning_and_bending {
+namespace {
+
+using namespace kds;
+using namespace kds::collision;
+using namespace kds::collision::tests;
+using namespace kds::tests::planes;
+using Long = kds::collision::tests::Long;
+using Path = certificates::PointMotion<2>;
+
+/// As the motion says, by none of the library's code.
+LongMatrix rotation_at(const RigidMotion<2>& motion, double t) {
+  const Eigen::Quaternion<Long> q = motion.orientation.cast<Long>().normalized();
+  const LongVector spin = motion.angular_velocity.cast<Long>();
+  const Long rate = spin.norm();
+  if (rate == 0) return q.toRotationMatrix();
+  const Long angle = rate * (static_cast<Long>(t) - motion.start());
+  return Eigen::AngleAxis<Long>(angle, spin / rate).toRotationMatrix() * q.toRotationMatrix();
+}
+LongVector place_at(const RigidMotion<2>& motion, double t) {
+  const Long elapsed = static_cast<Long>(t) - motion.start();
+  const auto& c = motion.path.coefficients;
+  return c[0].cast<Long>() + elapsed * (c[1].cast<Long>() + elapsed * c[2].cast<Long>());
+}
+BruteSurface solid_at(const Solid& solid, const RigidMotion<2>& motion, double t) {
+  return solid.at(place_at(motion, t), rotation_at(motion, t));
+}
+
+/// A sheet that bends at random, until 2.
+BendingMesh random_sheet(samples::Random& random) {
+  std::vector<MeshScript::Keyframe> keyframes;
+  const samples::Sheet sheet(3);
+  for (int i = 0; i < 4; ++i) {
+    auto positions = sheet.positions;
+    for (Vector3d& p : positions) p += random.vector(0.3);
+    keyframes.push_back({0.75 * i - 0.25, positions});
+  }
+  return bending(std::move(keyframes), sheet.triangles);
+}
+BruteSurface sheet_at(const BendingMesh& sheet, const RigidMotion<2>& motion, double t) {
+  BruteSurface surface;
+  const LongMatrix turn = rotation_at(motion, t);
+  for (std::size_t k = 0; k < sheet.script->vertices(); ++k) {
+    surface.corners.push_back(place_at(motion, t) + turn * sheet.script->position(k, t).cast<Long>());
+  }
+  const auto triangles = sheet.script->triangles();
+  surface.faces.assign(triangles.begin(), triangles.end());
+  surface.add_edges_of_faces();
+  return surface;
+}
+
+/// Whether the origin of a solid is not its centre of mass, so that its inertia has to be given.
+bool off_centre(const Shape& shape) {
+  return std::holds_alternative<ConvexHull>(shape) || std::holds_alternative<MeshShape>(shape);
+}
+
+Body fixed_sheet(const BendingMesh& shape, double restitution = 1) {
+  return {.shape = shape, .motion = {RigidMotion<2>{}}, .fixed = true, .restitution = restitution};
+}
+
+}  // namespace
+
+TEST_CASE("the surface of a body that turns is where it is said to be, up to its uncertainty") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  const auto all = solids();
+  for (int i = 0; i < 60; ++i) {
+    const Solid& solid = all[static_cast<std::size_t>(i) % all.size()];
+    RigidMotion<2> motion{Path::line(random.vector(3), random.vector(2), 0.25), random.orientation(),
+                          random.vector(i < 30 ? 1 : 20)};
+    motion.path.coefficients[2] = random.vector(1);
+    RigidSurface<2> surface(place(solid.shape, Quaterniond::Identity()));
+    const double t0 = 0.25 + i * 0.125, h = std::ldexp(1.0, -2 - i % 10);
+    surface.move(motion, t0, t0 + h);
+    surface.surface().audit();
+    Long farthest = 0;
+    for (int k = 0; k <= 16; ++k) {
+      const double t = t0 + h * k / 16;
+      const BruteSurface exact = solid_at(solid, motion, t);
+      for (std::size_t v = 0; v < exact.corners.size(); ++v) {
+        // The place on the parabola, in long doubles: what position() rounds is no part of the promise.
+        const Long s = static_cast<Long>(k) / 16;
+        LongVector place = LongVector::Zero();
+        const std::array<Long, 3> weights{(1 - s) * (1 - s), 2 * s * (1 - s), s * s};
+        for (std::size_t c = 0; c < 3; ++c) {
+          place += weights[c] * surface.surface().control_points(c)[v].cast<Long>();
+        }
+        farthest = std::max(farthest, (place - exact.corners[v]).cwiseAbs().maxCoeff());
+      }
+    }
+    CAPTURE(i, kind_name(solid.shape), h, static_cast<double>(farthest), surface.surface().uncertainty());
+    CHECK(farthest <= surface.surface().uncertainty());
+    const double angle = motion.angular_velocity.norm() * h;
+    CHECK(surface.surface().uncertainty() <= 0.025 * angle * angle * angle * surface.reach() + 0x1p-38);
+  }
+}
+
+TEST_CASE("what turns is in contact with a sheet that bends while it is near, and not else") {
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  const auto all = solids();
+  int contacts = 0, separations = 0;
+  for (int i = 0; i < 12; ++i) {
+    const Solid& solid = all[static_cast<std::size_t>(i) % all.size()];
+    const BendingMesh sheet = random_sheet(random);
+    RigidMotion<2> motion{Path::line(random.vector(0.5), random.vector(0.5)), random.orientation(),
+                          random.vector(i % 3 == 0 ? 30 : 3)};
+    motion.path.coefficients[2] = random.vector(0.25);
+    const RigidMotion<2> of_sheet{Path::line(Vector3d::Zero(), random.vector(0.125)), random.orientation()};
+    Log log;
+    Turning world({.response = Response::none}, &log);
+    world.add_body({.shape = sheet, .motion = {of_sheet}});
+    world.add_body({.shape = solid.shape, .motion = {motion}});
+    world.advance_to(2.5);
+    world.audit();
+    contacts += static_cast<int>(log.count("contact") + log.count("overlap"));
+    separations += static_cast<int>(log.count("separation"));
+    const double tolerance = bending_tolerance * sheet.script->bounding_radius();
+    for (double t = 0.001; t < 2.5; t += 0.005) {
+      bool touching = false;
+      for (const auto& event : log.events) {
+        if (event.contact.time <= t) touching = std::string(event.what) != "separation";
+      }
+      const BruteSurface surface = sheet_at(sheet, of_sheet, t), placed = solid_at(solid, motion, t);
+      const bool through = go_through(surface, placed);
+      const Long distance = through ? 0 : brute_distance(surface, placed);
+      CAPTURE(i, t, kind_name(solid.shape), static_cast<double>(distance), through);
+      if (touching) {
+        CHECK(distance <= solid.radius + 2.5L * tolerance);
+      } else {
+        CHECK_FALSE(through);
+        CHECK(distance >= solid.radius);
+      }
+    }
+  }
+  CHECK(contacts > 5);
+  CHECK(separations > 3);
+}
+
+TEST_CASE("bodies that do not turn meet a sheet that bends when they do in a world of paths") {
+  const std::uint64_t seed = GENERATE(1, 2);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  const auto all = solids();
+  int events = 0;
+  for (int i = 0; i < 40; ++i) {
+    const Solid& solid = all[static_cast<std::size_t>(i) % all.size()];
+    const BendingMesh sheet = random_sheet(random);
+    const Quaterniond turn = random.orientation(), of_sheet = random.orientation();
+    const auto path = Path::line(random.vector(1), random.vector(0.75));
+    struct Times final : WorldListener<2> {
+      std::vector<double> at;
+      void contact(World<2>&, const PairEvent& e) override { at.push_back(e.contact.time); }
+      void separation(World<2>&, const PairEvent& e) override { at.push_back(e.contact.time); }
+    } times;
+    World<2> plain({.response = Response::none}, &times);
+    plain.add_body({.shape = sheet, .orientation = of_sheet, .motion = {Path{}}});
+    plain.add_body({.shape = solid.shape, .orientation = turn, .motion = {path}});
+    plain.advance_to(3);
+    Log log;
+    Turning world({.response = Response::none}, &log);
+    world.add_body({.shape = sheet, .motion = {RigidMotion<2>{Path{}, of_sheet}}});
+    world.add_body({.shape = solid.shape, .motion = {RigidMotion<2>{path, turn}}});
+    world.advance_to(3);
+    std::erase_if(log.events, [](const auto& event) { return std::string(event.what) == "overlap"; });
+    CAPTURE(i, kind_name(solid.shape));
+    REQUIRE(log.events.size() == times.at.size());
+    for (std::size_t k = 0; k < times.at.size(); ++k) {
+      ++events;
+      CHECK(log.events[k].contact.time == Approx(times.at[k]).epsilon(0).margin(1e-5));
+    }
+  }
+  CHECK(events > 10);
+}
+
+TEST_CASE("what turns and falls into a bowl that heaves never goes into it") {
+  const std::uint64_t seed = GENERATE(1, 2, 3, 4);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  for (const Solid& solid : solids()) {
+    const Bowl bowl(random, seed == 2 ? 40 : 5, 1);
+    Log log;
+    Turning world({.response = Response::elastic}, &log);
+    world.add_body(fixed_sheet(bowl.shape(), 0.25 * static_cast<double>(seed - 1)));
+    RigidMotion<2> motion{Path::line(Vector3d(0.25, -0.125, 0.75) + random.vector(0.125), random.vector(0.25)),
+                          random.orientation(), random.vector(10)};
+    motion.path.coefficients[2] = Vector3d(0, 0, -5);
+    Body description{.shape = solid.shape, .motion = {motion}};
+    if (off_centre(solid.shape)) description.inertia = 0.01;
+    if (seed % 2 == 0) description.friction = 0.5;
+    const BodyId body = world.add_body(description);
+    for (double t = 0; t <= 1; t += 1.0 / 64) {
+      world.advance_to(t);
+      const BruteSurface field = bowl.at(t);
+      const RigidMotion<2> now = world.motion(body);
+      const BruteSurface placed = solid_at(solid, now, t);
+      CAPTURE(t, kind_name(solid.shape), log.events.size());
+      CHECK(brute_distance(field, placed) > solid.radius);
+      CHECK_FALSE(go_through(field, placed));
+      const LongVector place = place_at(now, t);
+      CHECK(place[2] > height_at(field, place[0], place[1]));
+    }
+    CHECK(log.count("contact") > 1);
+    CHECK(log.count("passes") == 0);
+    CHECK(log.count("overlap") == 0);
+    CHECK(log.count("rests") == 0);
+  }
+}
+
+TEST_CASE("a contact gives what turns the velocity of the surface and the rebound, at the point that they touch with") {
+  const std::uint64_t seed = GENERATE(1, 2, 3);
+  CAPTURE(seed);
+  samples::Random random(seed);
+  const auto all = solids();
+  int checked = 0;
+  for (int i = 0; i < 24; ++i) {
+    const double restitution = 0.5 + 0.25 * (i % 3);
+    // A plate that rises, and tilts as it does: its velocity at a place is a linear function of that.
+    const samples::Sheet plate(2, 4);
+    const double rise = random.vector(0.5)[0], tilt = random.vector(0.25)[0];
+    auto later = plate.positions;
+    for (Vector3d& p : later) p[2] += rise + tilt * p[0];
+    const BendingMesh sheet = bending({{0, plate.positions}, {1, later}}, plate.triangles);
+    Log log;
+    Turning world({.response = Response::elastic}, &log);
+    world.add_body(fixed_sheet(sheet, restitution));
+    const Solid& solid = all[static_cast<std::size_t>(i) % all.size()];
+    const RigidMotion<2> motion{Path::line(Vector3d(0.25, -0.125, 0.75), random.vector(0.5) + Vector3d(0, 0, -2)),
+                                random.orientation(), random.vector(8)};
+    Body description{.shape = solid.shape, .motion = {motion}, .mass = 2};
+    description.inertia = 0.01;
+    const BodyId body = world.add_body(description);
+    while (log.count("contact") == 0 && world.step(1)) {
+    }
+    REQUIRE(log.count("contact") == 1);
+    const Contact& contact = log.events[0].contact;
+    const RigidMotion<2> after = world.motion(body);
+    const double t = contact.time;
+    const Vector3d arm = contact.point - after.path.position(t);
+    const Vector3d surface(0, 0, rise + tilt * contact.point[0]);
+    const auto parts = [&](const Vector3d& velocity, const Vector3d& spin) {
+      return contact.normal.dot(velocity + spin.cross(arm) - surface);
+    };
+    const double before = parts(motion.path.velocity(t), motion.angular_velocity);
+    CAPTURE(i, kind_name(solid.shape), t);
+    CHECK(before < 0);
+    CHECK(parts(after.path.velocity(t), after.angular_velocity) == Approx(-restitution * before).epsilon(1e-6));
+    // The impulse is along the normal, and turns the body by the arm.
+    const Vector3d impulse = 2 * (after.path.velocity(t) - motion.path.velocity(t));
+    CHECK(impulse.cross(contact.normal).norm() < 1e-9);
+    CHECK((0.01 * (after.angular_velocity - motion.angular_velocity) - arm.cross(impulse)).norm() < 1e-9);
+    ++checked;
+  }
+  CHECK(checked == 24);
+}
+
+TEST_CASE("bodies that turn among sheets that bend: the same events by all broad phases, and after a snapshot") {
+  const std::uint64_t seed = GENERATE(1, 2);
+  const Response response = GENERATE(Response::none, Response::elastic);
+  CAPTURE(seed, static_cast<int>(response));
+  std::vector<Log::Event> expected;
+  for (const BroadPhaseKind kind : all_methods) {
+    CAPTURE(static_cast<int>(kind));
+    samples::Random random(seed);
+    Log log;
+    WorldOptions options = kds::tests::planes::options(kind);
+    options.response = response;
+    Turning world(options, &log);
+    const Bowl bowl(random, 7, 1);
+    world.add_body(fixed_sheet(bowl.shape(), 0.5));
+    Body lid = fixed_sheet(random_sheet(random));
+    lid.motion[0].path = Path::line(Vector3d(0, 0, 2), Vector3d(0, 0, -0.5));
+    lid.motion[0].orientation = Quaterniond(0, 1, 0, 0);
+    world.add_body(lid);
+    const auto all = solids();
+    for (int i = 0; i < 10; ++i) {
+      RigidMotion<2> motion{Path::line(Vector3d(0, 0, 1) + random.vector(0.5), random.vector(1)), random.orientation(),
+                            random.vector(5)};
+      motion.path.coefficients[2] = Vector3d(0, 0, -4);
+      Body body{.shape = all[static_cast<std::size_t>(i) % all.size()].shape, .motion = {motion}, .restitution = 0.75};
+      if (off_centre(body.shape)) body.inertia = 0.01;
+      world.add_body(body);
+    }
+    const double end = 0.75;
+    world.advance_to(0.4 * end);
+    if (kind == BroadPhaseKind::grid) {
+      const Snapshot saved = save(world);
+      const auto before = log.events;
+      world.advance_to(0.75 * end);
+      restore(saved, world);
+      log.events = before;
+    }
+    world.advance_to(end);
+    world.audit();
+    if (expected.empty()) expected = log.events;
+    CHECK(log.events.size() == expected.size());
+    CHECK(log.events == expected);
+  }
+  CHECK(expected.size() > 20);
+}
+
+TEST_CASE("a membrane that is moved step by step wakes what rests in its way, and pushes it on") {
+  std::vector<Vector3d> positions;  // upright, above the plate on which a box lies
+  const samples::Sheet sheet(4);
+  for (const Vector3d& p : sheet.positions) positions.emplace_back(0, p[0], p[1] + 1.625);
+  const auto at = [&](double x) {
+    auto moved = positions;
+    for (Vector3d& p : moved) p[0] = x + 0.0625 * p[1] * p[1];
+    return moved;
+  };
+  Log log;
+  Turning world({.response = Response::elastic}, &log);
+  const BodyId membrane = world.add_body(fixed_sheet(bending({{0, at(-0.5)}}, sheet.triangles), 0));
+  world.add_body({.shape = Box{Vector3d(2, 2, 0.5)}, .motion = {RigidMotion<2>{}}, .fixed = true});
+  RigidMotion<2> falls{Path::line(Vector3d(0, 0, 0.8125), Vector3d::Zero())};
+  falls.path.coefficients[2] = Vector3d(0, 0, -5);
+  const Solid cube = solids()[2];
+  const BodyId box = world.add_body({.shape = cube.shape, .motion = {falls}, .restitution = 0, .friction = 0.5});
+  world.advance_to(2);
+  REQUIRE(log.count("rests") == 1);
+  for (int step = 1; step <= 24; ++step) {
+    const double t = 2 + step / 16.0, x = -0.5 + step / 32.0;
+    world.update_vertices(membrane, {{t, at(x)}});
+    world.advance_to(t);
+    BruteSurface surface;
+    for (const Vector3d& p : at(x)) surface.corners.push_back(p.cast<Long>());
+    surface.faces = sheet.triangles;
+    surface.add_edges_of_faces();
+    const BruteSurface placed = solid_at(cube, world.motion(box), t);
+    CAPTURE(t, log.events.size());
+    CHECK_FALSE(go_through(surface, placed));
+    CHECK(brute_distance(surface, placed) > 0);
+    CHECK(place_at(world.motion(box), t)[0] > x);
+  }
+  CHECK(log.count("wakes") >= 1);
+  CHECK(log.count("passes") == 0);
+  CHECK(place_at(world.motion(box), world.now())[0] > 0.25);
+}
+
+TEST_CASE("a compound of hulls meets a sheet that bends as its parts do") {
+  samples::Random random(5);
+  const Compound bar = compound(std::vector<CompoundPart>{{Box{Vector3d(0.25, 0.0625, 0.0625)}, {0.25, 0, 0}},
+                                                          {Box{Vector3d(0.0625, 0.25, 0.0625)}, {-0.25, 0, 0}}});
+  int events = 0;
+  for (int i = 0; i < 8; ++i) {
+    const BendingMesh sheet = random_sheet(random);
+    const RigidMotion<2> motion{Path::line(random.vector(0.5), random.vector(0.5)), random.orientation(),
+                                random.vector(4)};
+    std::array<std::vector<double>, 2> begins;
+    for (const bool whole : {false, true}) {
+      Log log;
+      Turning world({.response = Response::none}, &log);
+      world.add_body({.shape = sheet, .motion = {RigidMotion<2>{}}});
+      if (whole) {
+        world.add_body({.shape = bar, .motion = {motion}});
+      } else {
+        for (const Shape& part : bar.parts->parts())
+          world.add_body({.shape = part, .motion = {motion}, .category = 2, .collides_with = 1});
+      }
+      world.advance_to(2.5);
+      int touching = 0;
+      for (const auto& event : log.events) {
+        const int was = touching;
+        touching += std::string(event.what) == "separation" ? -1 : 1;
+        if (std::min(was, touching) == 0) begins[whole].push_back(event.contact.time);
+      }
+    }
+    CAPTURE(i);
+    CHECK(begins[0] == begins[1]);
+    events += static_cast<int>(begins[0].size());
+  }
+  CHECK(events > 6);
+}
+
+TEST_CASE("meshes that bend do not turn themselves") {
+  const BendingMesh sheet = bending({{0, samples::Sheet(2).positions}}, samples::Sheet(2).triangles);
+  Turning world({.response = Response::none});
+  RigidMotion<2> turns{};
+  turns.angular_velocity = Vector3d(0, 0, 1);
+  CHECK_THROWS_WITH(world.add_body({.shape = sheet, .motion = {turns}}),
+                    "motion[0].angular_velocity: a bending mesh does not turn: its vertices say how it moves");
+  const BodyId id = world.add_body({.shape = sheet, .motion = {RigidMotion<2>{}}});
+  CHECK_THROWS_WITH(world.update_motion(id, turns), Catch::Contains("angular_velocity: a bending mesh does not turn"));
+  const BodyId ball = world.add_body({.shape = Sphere{1}, .motion = {turns}});
+  CHECK_THROWS_WITH(world.add_body({.shape = sheet, .sensor = true, .attached_to = ball}),
+                    Catch::Contains("attached_to: a bending mesh does not turn, as body 1 may"));
+}
+
+}  // namespace test_turning_and_bending
