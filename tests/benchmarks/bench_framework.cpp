@@ -18,6 +18,7 @@
 #include "structures/gabriel_graph.hpp"
 #include "structures/growing_segments.hpp"
 #include "structures/heap.hpp"
+#include "structures/k_nearest.hpp"
 #include "structures/periodic_delaunay.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
@@ -185,6 +186,18 @@ void measure_plane(Id n, double end, int rounds) {
   };
   on_delaunay("closest pair, on Delaunay", structures::ClosestPairRule<Path>{});
   on_delaunay("Gabriel graph, on Delaunay", structures::GabrielGraphRule<Path>{});
+  measure("4 nearest of all, on Delaunay and Voronoi cells", Degree, n, rounds, [&] {
+    Random random(n);
+    MovingSet<Path> set;
+    for (Id id = 0; id < n; ++id) set.insert(id, random_path<Degree>(random), 0);
+    Kinetic<structures::DelaunayRule<Path>> triangulation(set, 0);
+    Kinetic<structures::VoronoiCellsRule<Path>> cells(triangulation, 0);
+    Kinetic<structures::KNearestRule<Path>> nearest(cells, 0, structures::KNearestRule<Path>(4));
+    triangulation.extend_horizon(0, end);
+    nearest.extend_horizon(0, end);
+    const Cost cost = run(end, triangulation, cells, nearest);
+    return std::pair(cost, nearest.measures());
+  });
   // Of about the points' distances: half of the triangles are in the complex.
   on_delaunay("alpha complex, on Delaunay", structures::AlphaComplexRule<Path>(0.5 / std::sqrt(n)));
 }
