@@ -227,8 +227,8 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   const auto comes_later = [&](Id known) {
     return is_before(next, {known, *arrival_at(repair[id], repair[known]), repair.now()});
   };
+  if (!end.knows_all && (end.ahead.empty() || !comes_later(end.ahead.front()))) return;  // of nearly all others
   const auto place = std::partition_point(end.ahead.begin(), end.ahead.end(), comes_later);
-  if (place == end.ahead.begin() && !end.knows_all) return;
   if (place == end.ahead.end()) {
     end.arrival = arrival;
     repair.certify(id);
