@@ -27,9 +27,9 @@ namespace kds::structures {
 /// but for the last one, and its own are not nearer than the last. For k = 1 alone NearestNeighboursRule
 /// (nearest_neighbours.hpp) is the plainer one.
 ///
-/// Cost, besides that of the triangulation: on average some 5 k certificates for a point (compact but for this factor),
-/// of degree 2 for linear and 4 for quadratic paths; an event of its own looks at one point, O(k^2) signs and at most
-/// some 5 k certificates (responsive); a point whose neighbours have changed is looked at with all that have it among
+/// Cost, besides that of the triangulation: on average some 3 k certificates for a point (compact but for this factor),
+/// of degree 2 for linear and 4 for quadratic paths; an event of its own looks at one point, O(k^2) signs and O(k)
+/// certificates (responsive); a point whose neighbours have changed is looked at with all that have it among
 /// their nearest, some k on average. Each event of its own is external, a change of a list.
 ///
 /// Of points that stay in one place only DelaunayRule::vertex counts, and the others have its list. While all points

@@ -222,6 +222,28 @@ void measure_space(Id n, double end, int rounds) {
   measure("regular in space", Degree, n, end, rounds, structures::RegularTriangulationRule<Weighted>{}, weighted);
 }
 
+/// An end that grows is inserted among n others, after a hundredth of a second.
+void measure_insertion(Id n, int rounds) {
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    Random random(n);
+    MovingSet<structures::GrowingEnd> set;
+    const auto end = [&] { return structures::GrowingEnd{random_path<1>(random)}; };
+    for (Id id = 0; id < n; ++id) set.insert(id, end(), 0);
+    Kinetic<structures::GrowingSegmentsRule> structure(set, 0);
+    run(0.01, structure);
+    constexpr Id more = 50;
+    const double start = thread_seconds();
+    for (Id id = n; id < n + more; ++id) {
+      auto next = end();
+      next.path.start = 0.01;
+      set.insert(id, next, 0.01);
+    }
+    ratios.push_back((thread_seconds() - start) / more / tuned_list<1>(1000, duration(1000)).per_event());
+  }
+  std::printf("insertion of an end that grows / swap of a tuned list of 1 000,1,%u,50,%.0f\n", n, median(ratios));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -229,6 +251,7 @@ int main(int argc, char** argv) {
   std::printf("what,degree,n,swaps,time ratio\n");
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<1>(n, rounds);
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<2>(n, rounds);
+  for (const Id n : {100u, 1000u, 10000u}) measure_insertion(n, n < 10000 ? rounds : 1);
   std::printf(
       "\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
       "time of an event / swap of a tuned list\n");
