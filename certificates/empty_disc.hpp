@@ -14,9 +14,9 @@ namespace kds::certificates {
 template <class Path>
 struct OutsideDisc {
   static constexpr int degree = 2 * Path::degree;
-  const Path& a;
-  const Path& b;
-  const Path& c;
+  Held<Path> a;
+  Held<Path> b;
+  Held<Path> c;
   double sign;  ///< 1: outside; -1: inside
 
   OutsideDisc(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, double side)
@@ -32,7 +32,7 @@ struct OutsideDisc {
   /// Cheap and sufficient: c is one of the ends.
   bool vanishes() const requires(!requires { Path::sampled; }) { return a == c || b == c; }
   bool is_negative_of(const OutsideDisc& other) const {
-    return sign == -other.sign && &a == &other.a && &b == &other.b && &c == &other.c;
+    return sign == -other.sign && is_same_thing(a, other.a) && is_same_thing(b, other.b) && is_same_thing(c, other.c);
   }
 
  private:
@@ -47,8 +47,8 @@ struct OutsideDisc {
 template <class Path>
 struct PairRadius {
   static constexpr int degree = 2 * Path::degree;
-  const Path& a;
-  const Path& b;
+  Held<Path> a;
+  Held<Path> b;
   double radius;
   double sign;  ///< 1: at most this radius; -1: at least
 
@@ -56,7 +56,7 @@ struct PairRadius {
       : a(first), b(second), radius(limit), sign(side) {}
 
   bool is_negative_of(const PairRadius& other) const {
-    return sign == -other.sign && &a == &other.a && &b == &other.b && radius == other.radius;
+    return sign == -other.sign && is_same_thing(a, other.a) && is_same_thing(b, other.b) && radius == other.radius;
   }
 
   template <class Number>
@@ -74,9 +74,9 @@ struct PairRadius {
 template <class Path>
 struct CircleRadius {
   static constexpr int degree = 6 * Path::degree;
-  const Path& a;
-  const Path& b;
-  const Path& c;
+  Held<Path> a;
+  Held<Path> b;
+  Held<Path> c;
   double radius;
   double sign;  ///< 1: at most this radius; -1: at least
 
@@ -84,7 +84,8 @@ struct CircleRadius {
       : a(first), b(second), c(third), radius(limit), sign(side) {}
 
   bool is_negative_of(const CircleRadius& other) const {
-    return sign == -other.sign && &a == &other.a && &b == &other.b && &c == &other.c && radius == other.radius;
+    return sign == -other.sign && is_same_thing(a, other.a) && is_same_thing(b, other.b) && is_same_thing(c, other.c) &&
+           radius == other.radius;
   }
 
   template <class Number>

@@ -7,6 +7,7 @@
 #include "structures/alpha_complex.hpp"
 #include "structures/closest_pair.hpp"
 #include "structures/gabriel_graph.hpp"
+#include "structures/k_nearest.hpp"
 #include "structures/nearest_neighbours.hpp"
 #include "structures/spanning_tree.hpp"
 #include "structures/voronoi_cells.hpp"
@@ -53,8 +54,9 @@ int main() {
   Kinetic<structures::GabrielGraphRule<Path>> gabriel(triangulation, 0);
   Kinetic<structures::AlphaComplexRule<Path>> shape(triangulation, 0, structures::AlphaComplexRule<Path>(3));
   Kinetic<structures::VoronoiCellsRule<Path>> cells(triangulation, 0);
+  Kinetic<structures::KNearestRule<Path>> three(cells, 0, structures::KNearestRule<Path>(3));  // on what stands on it
   Kinetic<DegreesRule> degrees(triangulation, 0);
-  Simulator simulator(0, triangulation, closest, tree, nearest, gabriel, shape, cells, degrees);
+  Simulator simulator(0, triangulation, closest, tree, nearest, gabriel, shape, cells, three, degrees);
   simulator.advance_to(4);
   simulator.audit();
 
@@ -73,5 +75,7 @@ int main() {
             << " on the border of the alpha shape of radius 3\n"
             << "the Voronoi cell of point 0 has the corners";
   for (const auto& [x, y] : cells.rule().cell(0, points, 4).vertices) std::cout << " (" << x << ", " << y << ")";
+  std::cout << "\nand its three nearest are, in order,";
+  for (const kds::Id id : three.rule().nearest(0)) std::cout << " " << id;
   std::cout << "\n";
 }

@@ -39,6 +39,9 @@ struct AlphaTriangleChange {
 ///     Kinetic<DelaunayRule<Path>> triangulation(points, now);
 ///     Kinetic<AlphaComplexRule<Path>> complex(triangulation, now, AlphaComplexRule<Path>(radius));
 ///
+/// or on a periodic one, AlphaComplexRule<Path, PeriodicDelaunayRule<Path>>, as the complex of all copies: edges and
+/// triangles are given by the ids of the points of which their corners are copies, which may be the same.
+///
 /// A triangle is in it if its circle is small enough. An edge is if a triangle beside it is; or if it is a Gabriel edge
 /// (gabriel_graph.hpp) and not longer than twice the radius. Each is a conjunction of signs (Selection).
 ///
@@ -55,8 +58,8 @@ struct AlphaTriangleChange {
 /// If four or more points stay on one circle, triangles and edges are those that the triangulation has. Points that
 /// stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is known
 /// (DelaunayRule::flat).
-template <class Path>
-class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
+template <class Path, class Delaunay = DelaunayRule<Path>>
+class AlphaComplexRule : public StandsOn<Delaunay, TriangleChange> {
  public:
   static constexpr const char* name = "AlphaComplex";
   using Element = Path;
@@ -64,9 +67,9 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   using Pen = RepairOf<AlphaComplexRule>;
   using Edge = TriangulationEdges::Number;
   using Triangle = std::uint32_t;
-  using Outside = certificates::OutsideDisc<Path>;
-  using Short = certificates::PairRadius<Path>;
-  using Small = certificates::CircleRadius<Path>;
+  using Outside = certificates::OutsideDisc<typename Delaunay::Place>;
+  using Short = certificates::PairRadius<typename Delaunay::Place>;
+  using Small = certificates::CircleRadius<typename Delaunay::Place>;
   using Choice = std::variant<std::monostate, Outside, Short, Small>;
 
   /// Throws std::invalid_argument for a radius that is negative or not finite. A length.
@@ -86,7 +89,7 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   /// How many triangles of the complex are beside an edge of it: of 2, it is inside the alpha shape; of 1, on its
   /// border; of 0, a part of its own, and the shape is on neither side. Precondition: contains_edge(edge).
   int triangles_beside(Edge edge) const {
-    const TriangleMesh& mesh = this->inner().mesh();
+    const auto& mesh = this->inner().mesh();
     const TriangleMesh::Edge h = this->inner().edges().half_edge(edge);
     return contains_triangle(h / 3) + contains_triangle(mesh.twin(h) / 3);
   }
@@ -97,7 +100,7 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   std::vector<std::array<Id, 2>> border() const {
     std::vector<std::array<Id, 2>> result;
     for (Edge edge = 0; edge < edges_.end(); ++edge) {
-      if (contains_edge(edge) && triangles_beside(edge) < 2) result.push_back(edges_.corners(edge));
+      if (contains_edge(edge) && triangles_beside(edge) < 2) result.push_back(edges_.ids(edge));
     }
     std::sort(result.begin(), result.end());
     return result;
@@ -111,12 +114,8 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     return sign == 0 ? Choice{} : condition(slot, x, sign);
   }
   std::vector<Id> members(Slot slot) const {
-    if (slot % 4 == 3) {
-      const auto corners = corners_of(slot / 4);
-      return {corners.begin(), corners.end()};
-    }
-    const auto [a, b, c] = corners_beside(slot / 4, slot % 4 % 2);
-    return slot % 4 == 2 ? std::vector{a, b} : std::vector{a, b, c};
+    const auto [a, b, c] = slot % 4 == 3 ? corners_of(slot / 4) : corners_beside(slot / 4, slot % 4 % 2);
+    return slot % 4 == 2 ? std::vector{id_of(a), id_of(b)} : std::vector{id_of(a), id_of(b), id_of(c)};
   }
 
   Effect repair(Slot slot, Pen& repair) {
@@ -148,18 +147,25 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
 
  private:
-  std::array<Id, 3> corners_beside(Edge edge, std::size_t side) const {
-    return this->inner().edges().corners_beside(edge, side, this->inner().mesh());
+  using Corner = typename Delaunay::Corner;
+
+  auto edge_of() const {
+    return [this](TriangleMesh::Edge h) { return this->inner().edges().of(h); };
   }
-  /// Ascending.
-  std::array<Id, 3> corners_of(Triangle triangle) const {
-    const TriangleMesh& mesh = this->inner().mesh();
-    std::array<Id, 3> corners{mesh.origin(3 * triangle), mesh.origin(3 * triangle + 1), mesh.origin(3 * triangle + 2)};
-    std::sort(corners.begin(), corners.end());
-    return corners;
+  /// The ends of an edge, and the third corner of the triangle on one side of it.
+  std::array<Corner, 3> corners_beside(Edge edge, std::size_t side) const {
+    const TriangleMesh::Edge h = this->inner().edges().half_edge(edge);
+    return this->inner().corners(side == 0 ? h : this->inner().mesh().twin(h));
+  }
+  std::array<Corner, 3> corners_of(Triangle triangle) const {
+    return in_ascending_order(this->inner().corners(3 * triangle));
+  }
+  std::array<Corner, 2> ends_of(Edge edge) const {
+    const auto [a, b, beside] = corners_beside(edge, 0);
+    return in_ascending_order(std::array{a, b});
   }
   bool is_triangle(Triangle triangle) const {
-    const TriangleMesh& mesh = this->inner().mesh();
+    const auto& mesh = this->inner().mesh();
     return triangle < mesh.end_triangle() && mesh.in_use(triangle) && mesh.finite(triangle);
   }
   bool is_in(Edge edge) const {
@@ -168,14 +174,14 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
 
   /// None of the outer side of an edge of the hull.
   Choice condition(Slot slot, const MovingSet<Path>& x, double sign) const {
+    const Delaunay& delaunay = this->inner();
+    const auto [a, b, c] = slot % 4 == 3 ? corners_of(slot / 4) : corners_beside(slot / 4, slot % 4 % 2);
+    if (slot % 4 == 2) return Short{delaunay.place(a, x), delaunay.place(b, x), radius_, sign};
+    if (delaunay.at_infinity(c)) return {};
     if (slot % 4 == 3) {
-      const auto [a, b, c] = corners_of(slot / 4);
-      return Small{x[a], x[b], x[c], radius_, sign};
+      return Small{delaunay.place(a, x), delaunay.place(b, x), delaunay.place(c, x), radius_, sign};
     }
-    const auto [a, b, c] = corners_beside(slot / 4, slot % 4 % 2);
-    if (slot % 4 == 2) return Short{x[a], x[b], radius_, sign};
-    if (c == TriangleMesh::infinite) return {};
-    return Outside{x[a], x[b], x[c], sign};
+    return Outside{delaunay.place(a, x), delaunay.place(b, x), delaunay.place(c, x), sign};
   }
   /// Of the conditions whose slots begin with this one.
   auto meets(Slot first, const Pen& repair) const {
@@ -216,24 +222,24 @@ class AlphaComplexRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     const auto report = [&](EdgeChange::What what, Edge number, const std::array<Id, 2>& ends) {
       repair.report(EdgeChange{what, number, ends});
     };
-    if (is_in(edge)) return edges_.put(edge, this->inner().edges().ends(edge), report);
+    if (is_in(edge)) return edges_.put(edge, ends_of(edge), report);
     return edges_.take_out(edge, report);
   }
 
   double radius_;
   Selection<3> empty_;  ///< edges without a triangle beside them, whose own disc is small enough and empty
   Selection<1> small_;  ///< triangles
-  TriangulationSubset<2> edges_;
-  TriangulationSubset<3> triangles_;
-  EdgesOfTriangles sides_;
+  TriangulationSubset<2, Corner> edges_;
+  TriangulationSubset<3, Corner> triangles_;
+  PartsOfTriangles sides_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <class Path>
-void AlphaComplexRule<Path>::set_radius(double radius, Pen& repair) {
+template <class Path, class Delaunay>
+void AlphaComplexRule<Path, Delaunay>::set_radius(double radius, Pen& repair) {
   radius_ = radius;
-  const TriangulationEdges& edges = this->inner().edges();
+  const auto& edges = this->inner().edges();
   for (Triangle triangle = 0; triangle < this->inner().mesh().end_triangle(); ++triangle) {
     if (!is_triangle(triangle)) continue;
     look_at_triangle(triangle, repair);
@@ -246,70 +252,65 @@ void AlphaComplexRule<Path>::set_radius(double radius, Pen& repair) {
   }
 }
 
-template <class Path>
-Effect AlphaComplexRule<Path>::follow(std::span<const TriangleChange> changes, Pen& repair) {
+template <class Path, class Delaunay>
+Effect AlphaComplexRule<Path, Delaunay>::follow(std::span<const TriangleChange> changes, Pen& repair) {
   bool other = false;
   for (const TriangleChange& change : changes) {
     look_at_triangle(change.triangle, repair);
     other = take_up_triangle(change.triangle, repair) || other;
   }
-  for (const Edge edge : sides_.take_up(changes, this->inner().mesh(), this->inner().edges())) {
+  for (const Edge edge : sides_.take_up(changes, this->inner().mesh(), edge_of())) {
     look_at_edge(edge, repair);
     other = take_up_edge(edge, repair) || other;
   }
   return other ? Effect::external : Effect::internal;
 }
 
-template <class Path>
-void AlphaComplexRule<Path>::change(Id id, Pen& repair) {
-  const TriangleMesh& mesh = this->inner().mesh();
-  if (!mesh.contains(id)) return;
-  this->inner().edges().for_each_at(id, mesh, [&](Edge edge) {
-    if (contains_edge(edge)) repair.report(EdgeChange{EdgeChange::What::moved, edge, edges_.corners(edge)});
-  });
-  const TriangleMesh::Edge first = mesh.from(id);
-  TriangleMesh::Edge h = first;
-  do {
+template <class Path, class Delaunay>
+void AlphaComplexRule<Path, Delaunay>::change(Id id, Pen& repair) {
+  if (!this->inner().mesh().contains(id)) return;
+  this->inner().mesh().for_each_from(id, [&](TriangleMesh::Edge h) {
+    const Edge edge = this->inner().edges().of(h);
+    if (contains_edge(edge)) repair.report(EdgeChange{EdgeChange::What::moved, edge, edges_.ids(edge)});
     if (contains_triangle(h / 3)) {
-      repair.report(AlphaTriangleChange{EdgeChange::What::moved, h / 3, triangles_.corners(h / 3)});
+      repair.report(AlphaTriangleChange{EdgeChange::What::moved, h / 3, triangles_.ids(h / 3)});
     }
-    h = mesh.clockwise(h);
-  } while (h != first);
+  });
 }
 
-template <class Path>
-auto AlphaComplexRule<Path>::changes_from_nothing() const
+template <class Path, class Delaunay>
+auto AlphaComplexRule<Path, Delaunay>::changes_from_nothing() const
     -> std::tuple<std::vector<EdgeChange>, std::vector<AlphaTriangleChange>> {
   std::vector<EdgeChange> edges;
   for (Edge edge = 0; edge < edges_.end(); ++edge) {
-    if (contains_edge(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.corners(edge)});
+    if (contains_edge(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.ids(edge)});
   }
   std::vector<AlphaTriangleChange> triangles;
   for (Triangle triangle = 0; triangle < triangles_.end(); ++triangle) {
     if (contains_triangle(triangle)) {
-      triangles.push_back({EdgeChange::What::came, triangle, triangles_.corners(triangle)});
+      triangles.push_back({EdgeChange::What::came, triangle, triangles_.ids(triangle)});
     }
   }
   return {std::move(edges), std::move(triangles)};
 }
 
-template <class Path>
-void AlphaComplexRule<Path>::audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
+template <class Path, class Delaunay>
+void AlphaComplexRule<Path, Delaunay>::audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
   const auto require = [](bool right, const char* part, std::uint32_t number) {
     if (right) return;
     throw AuditFailure(std::string(name) + ": " + part + " " + std::to_string(number) + ": is not as it should be");
   };
-  const TriangulationEdges& edges = this->inner().edges();
-  sides_.audit(this->inner().mesh(), edges);
+  const auto& edges = this->inner().edges();
+  sides_.audit(this->inner().mesh(), edge_of());
   for (Edge edge = 0; edge < std::max(edges.end(), edges_.end()); ++edge) {
     const bool alone = edges.contains(edge) && triangles_beside(edge) == 0;
     require(empty_.knows(edge) == alone && contains_edge(edge) == is_in(edge), "edge", edge);
-    require(!contains_edge(edge) || edges_.corners(edge) == edges.ends(edge), "edge", edge);
+    require(!contains_edge(edge) || edges_.contains(edge, ends_of(edge)), "edge", edge);
   }
   for (Triangle triangle = 0; triangle < std::max(this->inner().mesh().end_triangle(), triangles_.end()); ++triangle) {
     require(small_.knows(triangle) == is_triangle(triangle), "triangle", triangle);
     require(contains_triangle(triangle) == small_.contains(triangle), "triangle", triangle);
-    require(!contains_triangle(triangle) || triangles_.corners(triangle) == corners_of(triangle), "triangle", triangle);
+    require(!contains_triangle(triangle) || triangles_.contains(triangle, corners_of(triangle)), "triangle", triangle);
   }
 }
 

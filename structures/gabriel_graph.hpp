@@ -23,6 +23,9 @@ namespace kds::structures {
 ///     Kinetic<DelaunayRule<Path>> triangulation(points, now);
 ///     Kinetic<GabrielGraphRule<Path>> gabriel(triangulation, now);
 ///
+/// or on a periodic one, GabrielGraphRule<Path, PeriodicDelaunayRule<Path>>, as the graph of all copies: a pair of ids
+/// is in it for each copy of the second that is a neighbour, and a point may be a neighbour of its own copy.
+///
 /// Such pairs are edges of that, and of an edge only the third corners of the two triangles beside it have to be
 /// compared with the disc [Matula80]; definition: [Gabriel69]. Points that stay on the border of a disc are in it: so
 /// the graph is a function of the points also where the triangulation is not. It contains the spanning tree.
@@ -38,20 +41,20 @@ namespace kds::structures {
 ///
 /// Points that stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is
 /// known (DelaunayRule::flat).
-template <class Path>
-class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
+template <class Path, class Delaunay = DelaunayRule<Path>>
+class GabrielGraphRule : public StandsOn<Delaunay, TriangleChange> {
  public:
   static constexpr const char* name = "GabrielGraph";
   using Element = Path;
   using Change = EdgeChange;
   using Pen = RepairOf<GabrielGraphRule>;
   using Edge = TriangulationEdges::Number;
-  using Outside = certificates::OutsideDisc<Path>;
+  using Outside = certificates::OutsideDisc<typename Delaunay::Place>;
 
   /// Whether an edge of the triangulation is in the graph.
   bool contains(Edge edge) const { return graph_.contains(edge); }
   /// The lower id first. Precondition: contains(edge).
-  const std::array<Id, 2>& ends(Edge edge) const { return graph_.corners(edge); }
+  std::array<Id, 2> ends(Edge edge) const { return graph_.ids(edge); }
   /// Numbers of edges are below this.
   Edge end_edge() const { return graph_.end(); }
   /// Each with the lower id first, in ascending order. O(n log n).
@@ -64,7 +67,8 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     return condition(slot, x, sign);
   }
   std::array<Id, 3> members(Slot slot) const {
-    return this->inner().edges().corners_beside(slot / 2, slot % 2, this->inner().mesh());
+    const auto [a, b, c] = corners(slot);
+    return {id_of(a), id_of(b), id_of(c)};
   }
 
   Effect repair(Slot slot, Pen& repair) {
@@ -74,7 +78,7 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
   Effect follow(std::span<const TriangleChange> changes, Pen& repair) {
     bool other = false;
-    for (const Edge edge : sides_.take_up(changes, this->inner().mesh(), this->inner().edges())) {
+    for (const Edge edge : sides_.take_up(changes, this->inner().mesh(), edge_of())) {
       if (this->inner().edges().contains(edge)) {
         selection_.look(edge, meets(edge, repair));
       } else {
@@ -86,9 +90,9 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
   /// Its triangles have been followed already.
   void change(Id id, Pen& repair) {
-    const TriangleMesh& mesh = this->inner().mesh();
-    if (!mesh.contains(id)) return;
-    this->inner().edges().for_each_at(id, mesh, [&](Edge edge) {
+    if (!this->inner().mesh().contains(id)) return;
+    this->inner().mesh().for_each_from(id, [&](TriangleMesh::Edge h) {
+      const Edge edge = this->inner().edges().of(h);
       if (contains(edge)) repair.report({EdgeChange::What::moved, edge, ends(edge)});
     });
   }
@@ -101,11 +105,11 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
 
   void audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
-    const TriangulationEdges& edges = this->inner().edges();
-    sides_.audit(this->inner().mesh(), edges);
+    const auto& edges = this->inner().edges();
+    sides_.audit(this->inner().mesh(), edge_of());
     for (Edge edge = 0; edge < std::max(edges.end(), end_edge()); ++edge) {
       if (selection_.knows(edge) != edges.contains(edge) || selection_.contains(edge) != contains(edge) ||
-          (contains(edge) && ends(edge) != edges.ends(edge))) {
+          (contains(edge) && !graph_.contains(edge, ends_in(edge)))) {
         throw AuditFailure(name + (": edge " + std::to_string(edge)) + ": is not as in the triangulation");
       }
     }
@@ -117,11 +121,26 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
 
  private:
+  using Corner = typename Delaunay::Corner;
+
+  auto edge_of() const {
+    return [this](TriangleMesh::Edge h) { return this->inner().edges().of(h); };
+  }
+  /// The ends of an edge, and the third corner of the triangle beside it.
+  std::array<Corner, 3> corners(Slot slot) const {
+    const TriangleMesh::Edge h = this->inner().edges().half_edge(slot / 2);
+    return this->inner().corners(slot % 2 == 0 ? h : this->inner().mesh().twin(h));
+  }
+  std::array<Corner, 2> ends_in(Edge edge) const {
+    const auto [a, b, beside] = corners(2 * edge);
+    return in_ascending_order(std::array{a, b});
+  }
   /// None on the outer side of an edge of the hull.
   std::optional<Outside> condition(Slot slot, const MovingSet<Path>& x, int sign) const {
-    const auto [a, b, c] = members(slot);
-    if (c == TriangleMesh::infinite) return std::nullopt;
-    return Outside{x[a], x[b], x[c], static_cast<double>(sign)};
+    const auto [a, b, c] = corners(slot);
+    const Delaunay& delaunay = this->inner();
+    if (delaunay.at_infinity(c)) return std::nullopt;
+    return Outside{delaunay.place(a, x), delaunay.place(b, x), delaunay.place(c, x), static_cast<double>(sign)};
   }
   auto meets(Edge edge, const Pen& repair) const {
     return [this, edge, &repair](std::size_t side) {
@@ -136,13 +155,13 @@ class GabrielGraphRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     const auto report = [&](EdgeChange::What what, Edge number, const std::array<Id, 2>& ends) {
       repair.report({what, number, ends});
     };
-    if (selection_.contains(edge)) return graph_.put(edge, this->inner().edges().ends(edge), report);
+    if (selection_.contains(edge)) return graph_.put(edge, ends_in(edge), report);
     return graph_.take_out(edge, report);
   }
 
   Selection<2> selection_;
-  TriangulationSubset<2> graph_;
-  EdgesOfTriangles sides_;
+  TriangulationSubset<2, Corner> graph_;
+  PartsOfTriangles sides_;
 };
 
 }  // namespace kds::structures

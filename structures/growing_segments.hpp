@@ -17,8 +17,8 @@
 namespace kds::structures {
 
 /// The end of a segment that begins where its path does, at the path's start, which may be still to come, and grows
-/// along it. A segment that grows
-/// at both ends is two of these, with opposite velocities. A `whole` one is all of its line, always: a border.
+/// along it. A segment that grows at both ends is two of these, with opposite velocities. A `whole` one is all of its
+/// line, always: a border.
 struct GrowingEnd {
   static constexpr int degree = 1;
   certificates::PlaneMotion<1> path;
@@ -95,12 +95,13 @@ class GrowingSegmentsRule {
     bool there = false, stop = false;
     bool knows_all = true;           ///< nothing is farther ahead than what is kept
     std::vector<Id> ahead{};         ///< whose tracks it comes to next, the next one last: or has stopped at
+    double reach = never;            ///< it comes to all of these up to this time; never if it knows all
     std::optional<Arrival> arrival;  ///< at the next
     double time = never;             ///< of stopping
 
     template <class Archive>
     void archive(Archive& archive) {
-      archive(there, stop, knows_all, ahead, arrival, time);
+      archive(there, stop, knows_all, ahead, reach, arrival, time);
     }
   };
   /// An arrival, and when: the first double that is not before it.
@@ -126,6 +127,14 @@ class GrowingSegmentsRule {
     const int sign = order(a.arrival, b.arrival);
     return sign > 0 || (sign == 0 && a.at < b.at);
   }
+  /// Whether an end surely comes to the line of another later than at a time, or never. By balls, so that of nearly all
+  /// lines, which are far ahead or behind, nothing exact has to be asked.
+  static bool surely_later(const Element& end, const Element& other, double now, double time) {
+    const auto f = Arrival{end.path, other.path, Arrival::At::line, 1}.polynomial<Ball<double>>(now);
+    const Ball<double> first = f.c[0], last = first + f.c[1] * (Ball<double>(time) - Ball<double>(now));
+    const auto is_positive = [](const Ball<double>& x) { return x.middle > x.radius; };
+    return (is_positive(first) && is_positive(last)) || (is_positive(-first) && is_positive(-last));
+  }
   static Arrival across(const certificates::PlaneMotion<1>& end, const certificates::PlaneMotion<1>& track);
   static std::optional<Arrival> arrival_at(const Element& end, const Element& other);
 
@@ -135,6 +144,7 @@ class GrowingSegmentsRule {
   bool may_stop(Id other, const Arrival& arrival, const MovingSet<Element>& elements) const {
     return !ends_[other].stop || is_covered(arrival, other, elements);
   }
+  static void keep_first(std::vector<Next>& found);
   void look_ahead(Id id, const Next* after, Pen& repair);
   void go_on(Id id, const Next& from, Pen& repair);
   void put_ahead(Id id, Id other, Pen& repair);
@@ -184,21 +194,36 @@ inline bool GrowingSegmentsRule::is_covered(const Arrival& arrival, Id other,
   return arrival.at == Arrival::At::beginning || !of_other.stop || order(passing, *of_other.arrival) >= 0;
 }
 
+/// In order.
+inline void GrowingSegmentsRule::keep_first(std::vector<Next>& found) {
+  const auto kept = found.begin() + static_cast<std::ptrdiff_t>(std::min(found.size(), kept_ahead));
+  std::partial_sort(found.begin(), kept, found.end(), is_before);
+  found.erase(kept, found.end());
+}
+
 /// Finds the next tracks that an end comes to after another, or else after now.
 inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repair) {
   std::vector<Next> found;
+  bool all = true;
+  double reach = never;
   for (const Id other : repair.elements().ids()) {
     if (other == id || !is_there(other)) continue;
+    if (reach < never && surely_later(repair[id], repair[other], repair.now(), reach)) continue;
     const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
     if (!arrival || !may_stop(other, *arrival, repair.elements())) continue;
     if (!after && !is_ahead(*arrival, repair.now())) continue;
     const Next next(other, *arrival, repair.now());
     if (!after || is_before(*after, next)) found.push_back(next);
+    if (found.size() < 4 * kept_ahead) continue;
+    keep_first(found);
+    reach = found.back().time;
+    all = false;
   }
-  const std::size_t kept = std::min(found.size(), kept_ahead);
-  std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(kept), found.end(), is_before);
   End& end = ends_[id];
-  end.knows_all = kept == found.size();
+  end.knows_all = all && found.size() <= kept_ahead;
+  keep_first(found);
+  end.reach = end.knows_all ? never : found.back().time;
+  const std::size_t kept = found.size();
   end.ahead.clear();
   for (std::size_t i = kept; i-- > 0;) end.ahead.push_back(found[i].at);
   end.arrival = kept > 0 ? std::optional(found[0].arrival) : std::nullopt;
@@ -220,10 +245,11 @@ inline void GrowingSegmentsRule::go_on(Id id, const Next& from, Pen& repair) {
 
 /// Puts a new track among those that are ahead of an end.
 inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
+  End& end = ends_[id];
+  if (!end.knows_all && surely_later(repair[id], repair[other], repair.now(), end.reach)) return;  // of nearly all
   const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
   if (!arrival || !is_ahead(*arrival, repair.now())) return;
   const Next next(other, *arrival, repair.now());
-  End& end = ends_[id];
   const auto comes_later = [&](Id known) {
     return is_before(next, {known, *arrival_at(repair[id], repair[known]), repair.now()});
   };
@@ -237,6 +263,7 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   if (end.ahead.size() <= kept_ahead) return;
   end.ahead.erase(end.ahead.begin());
   end.knows_all = false;
+  end.reach = Next(end.ahead.front(), *arrival_at(repair[id], repair[end.ahead.front()]), repair.now()).time;
 }
 
 /// Takes an end through all arrivals that are due, and come before another if one is given. What it depends on is

@@ -68,23 +68,21 @@ class Lawson {
   bool remove(Id vertex) {
     while (mesh_.valence(vertex) > 3) {
       Edge victim = TriangleMesh::none;
-      for_each_edge(vertex, [&](Edge h) {
-        const bool ear = mesh_.apex(h) != infinite && mesh_.apex(mesh_.twin(h)) != infinite &&
-                         mesh_.target(h) != infinite && flippable(h);
-        if (ear) victim = h;
-        return ear;
+      const bool has_ear = mesh_.any_from(vertex, [&](Edge h) {
+        victim = h;
+        return mesh_.apex(h) != infinite && mesh_.apex(mesh_.twin(h)) != infinite && mesh_.target(h) != infinite &&
+               flippable(h);
       });
-      if (victim == TriangleMesh::none) {  // A vertex of the hull: vertices behind it become part of the hull.
-        for_each_edge(vertex, [&](Edge h) {
-          if (mesh_.apex(h) == infinite && !mesh_.connected(mesh_.apex(mesh_.twin(h)), infinite)) victim = h;
-          return victim != TriangleMesh::none;
-        });
-      }
-      if (victim == TriangleMesh::none) return false;
+      // A vertex of the hull: vertices behind it become part of the hull.
+      const bool found = has_ear || mesh_.any_from(vertex, [&](Edge h) {
+        victim = h;
+        return mesh_.apex(h) == infinite && !mesh_.connected(mesh_.apex(mesh_.twin(h)), infinite);
+      });
+      if (!found) return false;
       flip(victim);
     }
     if (mesh_.size() < 6) return false;
-    for_each_edge(vertex, [&](Edge h) { return touched_.push_back(h / 3), false; });
+    mesh_.for_each_from(vertex, [&](Edge h) { touched_.push_back(h / 3); });
     mesh_.merge(vertex);
     bool solid = false;
     for (std::uint32_t t = 0; t < mesh_.end_triangle() && !solid; ++t) solid = mesh_.in_use(t) && mesh_.finite(t);
@@ -99,25 +97,23 @@ class Lawson {
 
   /// Whether the triangles around a vertex have positive area, and the hull turns left there.
   bool fits(Id vertex) const {
-    bool good = true;
-    for_each_edge(vertex, [&](Edge h) {
-      if (mesh_.finite(h / 3)) return !(good = area(h / 3) > 0);
+    return !mesh_.any_from(vertex, [&](Edge h) {
+      if (mesh_.finite(h / 3)) return area(h / 3) <= 0;
       for (Edge e = h - h % 3; e < h - h % 3 + 3; ++e) {
-        if (mesh_.origin(e) == infinite || mesh_.target(e) == infinite) good = good && edge(e) > 0;
+        const bool infinite_edge = mesh_.origin(e) == infinite || mesh_.target(e) == infinite;
+        if (infinite_edge && edge(e) <= 0) return true;
       }
-      return !good;
+      return false;
     });
-    return good;
   }
 
   /// Flips edges around a vertex that are not legal. Precondition: the vertex fits.
   void legalise_around(Id vertex) {
     std::vector<Edge> edges;
-    for_each_edge(vertex, [&](Edge h) {
+    mesh_.for_each_from(vertex, [&](Edge h) {
       touched_.push_back(h / 3);
       edges.push_back(h);
       edges.push_back(TriangleMesh::next(h));
-      return false;
     });
     legalise(std::move(edges));
   }
@@ -162,17 +158,6 @@ class Lawson {
   }
 
  private:
-  /// Calls f for each edge of a vertex until it gives true.
-  template <class F>
-  void for_each_edge(Id vertex, F&& f) const {
-    const Edge first = mesh_.from(vertex);
-    Edge h = first;
-    do {
-      if (f(h)) return;
-      h = mesh_.clockwise(h);
-    } while (h != first);
-  }
-
   /// Flips until all edges that can be reached from these are legal.
   void legalise(std::vector<Edge> edges) {
     while (!edges.empty()) {

@@ -78,6 +78,13 @@ class PeriodicDelaunayRule {
   /// How often it has been built anew.
   std::uint64_t rebuilds() const { return rebuilds_; }
 
+  /// As PlaneTriangulationRule: a corner is a copy of a vertex.
+  using Corner = VertexCopy;
+  std::array<Corner, 3> corners(Edge h) const { return mesh_.corners(h); }
+  static bool at_infinity(const Corner& /*corner*/) { return false; }
+  using Place = Copy;
+  Place place(const Corner& corner, const MovingSet<Path>& x) const { return {x[corner.id], periods_, corner.offset}; }
+
   /// The edges under their numbers, as TriangulationEdges gives those of a plane.
   struct Edges {
     const PeriodicMesh& mesh;
@@ -89,6 +96,8 @@ class PeriodicDelaunayRule {
       const Edge h = mesh.half_edge(edge);
       return {std::min(mesh.origin(h), mesh.target(h)), std::max(mesh.origin(h), mesh.target(h))};
     }
+    PeriodicMesh::Number of(Edge h) const { return mesh.edge(h); }
+    Edge half_edge(PeriodicMesh::Number edge) const { return mesh.half_edge(edge); }
   };
   Edges edges() const { return {mesh_}; }
   /// Certificate that an edge is not longer than another.

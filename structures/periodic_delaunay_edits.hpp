@@ -53,12 +53,9 @@ void PeriodicDelaunayRule<Path>::change(Id id, Pen& repair) {
   const Predicates is{repair.elements(), periods_, repair.now()};
   Lawson(mesh_, is, touched_, changed_).legalise_around(id);
   certify_touched(repair);
-  const Edge first = mesh_.from(id);
-  Edge h = first;
-  do {
+  mesh_.for_each_from(id, [&](Edge h) {
     repair.report(EdgeChange{EdgeChange::What::moved, mesh_.edge(h), ends_[mesh_.edge(h)]});
-    h = mesh_.clockwise(h);
-  } while (h != first);
+  });
 }
 
 template <class Path>

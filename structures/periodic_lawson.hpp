@@ -62,16 +62,10 @@ class PeriodicLawson {
 
   /// Removes a vertex that is not the only one; false if the mesh has to be built anew: the vertex is joined to itself.
   bool remove(Id vertex) {
-    bool joined_to_itself = false;
-    for_each_edge(vertex, [&](Edge h) { return joined_to_itself = mesh_.target(h) == vertex; });
-    if (joined_to_itself) return false;
+    if (mesh_.connected(vertex, vertex)) return false;
     while (mesh_.valence(vertex) > 3) {
       Edge victim = PeriodicMesh::none;
-      for_each_edge(vertex, [&](Edge h) {
-        if (can_leave(h)) victim = h;
-        return victim != PeriodicMesh::none;
-      });
-      if (victim == PeriodicMesh::none) return false;
+      if (!mesh_.any_from(vertex, [&](Edge h) { return can_leave(victim = h); })) return false;
       flip(victim);
     }
     touch(vertex);
@@ -86,28 +80,24 @@ class PeriodicLawson {
 
   /// Whether the triangles around a vertex have positive area.
   bool fits(Id vertex) const {
-    bool good = true;
-    for_each_edge(vertex, [&](Edge h) { return !(good = area(h / 3) > 0); });
-    return good;
+    return !mesh_.any_from(vertex, [&](Edge h) { return area(h / 3) <= 0; });
   }
 
   /// Counts the edges and triangles around a vertex as changed.
   void touch(Id vertex) {
-    for_each_edge(vertex, [&](Edge h) {
+    mesh_.for_each_from(vertex, [&](Edge h) {
       touched_.push_back(h / 3);
       changed_.push_back(mesh_.edge(h));
-      return false;
     });
   }
 
   /// Flips edges around a vertex that are not legal. Precondition: the vertex fits.
   void legalise_around(Id vertex) {
     std::vector<Edge> edges;
-    for_each_edge(vertex, [&](Edge h) {
+    mesh_.for_each_from(vertex, [&](Edge h) {
       touched_.push_back(h / 3);
       edges.push_back(h);
       edges.push_back(PeriodicMesh::next(h));
-      return false;
     });
     legalise(std::move(edges));
   }
@@ -135,17 +125,6 @@ class PeriodicLawson {
   }
 
  private:
-  /// Calls f for each half-edge from a vertex until it gives true.
-  template <class F>
-  void for_each_edge(Id vertex, F&& f) const {
-    const Edge first = mesh_.from(vertex);
-    Edge h = first;
-    do {
-      if (f(h)) return;
-      h = mesh_.clockwise(h);
-    } while (h != first);
-  }
-
   /// Whether a flip takes the edge from its origin, which is to be removed: it may come to lie on the new edge.
   bool can_leave(Edge h) const {
     const auto [a, b, c, d] = mesh_.corners_beside(h);

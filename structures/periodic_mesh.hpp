@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -22,13 +23,24 @@ struct VertexCopy {
   Id id = nobody;
   PeriodOffset offset{};
 
-  friend bool operator==(const VertexCopy&, const VertexCopy&) = default;
+  friend auto operator<=>(const VertexCopy&, const VertexCopy&) = default;
+  friend Id id_of(const VertexCopy& copy) { return copy.id; }
 
   template <class Archive>
   void archive(Archive& archive) {
     archive(id, offset);
   }
 };
+
+/// The copies of an edge or a triangle, displaced so that the first is the point itself: by these it is told from
+/// others with the same ids.
+template <std::size_t N>
+std::array<VertexCopy, N> in_ascending_order(std::array<VertexCopy, N> corners) {
+  std::sort(corners.begin(), corners.end());
+  const PeriodOffset first = corners[0].offset;
+  for (VertexCopy& corner : corners) corner.offset = corner.offset - first;
+  return corners;
+}
 
 /// A triangulation of the whole plane that is the same in each period, stored once. It is a TriangleMesh without a
 /// vertex at infinity, and each half-edge has an offset: it leads from a copy of its origin to the copy of its target
@@ -46,14 +58,18 @@ struct VertexCopy {
 class PeriodicMesh : private TriangleMesh {
  public:
   using Number = std::uint32_t;
+  using TriangleMesh::any_from;
   using TriangleMesh::apex;
   using TriangleMesh::clockwise;
+  using TriangleMesh::connected;
   using TriangleMesh::contains;
   using TriangleMesh::counter_clockwise;
   using TriangleMesh::Edge;
   using TriangleMesh::empty;
   using TriangleMesh::end_triangle;
   using TriangleMesh::end_vertex;
+  using TriangleMesh::finite;
+  using TriangleMesh::for_each_from;
   using TriangleMesh::from;
   using TriangleMesh::in_use;
   using TriangleMesh::next;
@@ -157,13 +173,10 @@ class PeriodicMesh : private TriangleMesh {
 
   /// Takes up that the point of a vertex has jumped by whole periods, so that its copies are where they were.
   void displace(Id vertex, const PeriodOffset& by) {
-    const Edge first = from(vertex);
-    Edge h = first;
-    do {
+    for_each_from(vertex, [&](Edge h) {
       offset_[h] = offset_[h] + by;
       offset_[twin(h)] = offset_[twin(h)] - by;
-      h = clockwise(h);
-    } while (h != first);
+    });
   }
 
   /// Throws AuditFailure unless it covers the plane once.

@@ -10,6 +10,7 @@
 #include "structures/triangulation_edges.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -58,6 +59,13 @@ class PlaneTriangulationRule {
   std::vector<Id> hull() const;
   /// The edges between points, under numbers that they keep. Those of a convex hull are not numbered.
   const TriangulationEdges& edges() const { return edges_; }
+  /// What structures that stand on a triangulation know of its triangles, be it one of a plane that repeats itself or
+  /// not: corners, origin of a half-edge first, and where they are. at_infinity() ones are nowhere.
+  using Corner = Id;
+  std::array<Corner, 3> corners(Edge h) const { return {mesh_.origin(h), mesh_.target(h), mesh_.apex(h)}; }
+  static bool at_infinity(Corner corner) { return corner == infinite; }
+  using Place = Path;
+  const Place& place(Corner corner, const MovingSet<Path>& x) const { return x[corner]; }
   /// Certificate that an edge is not longer than another.
   using LengthOrder = certificates::DistanceOrder<Path>;
   LengthOrder length_order(TriangulationEdges::Number edge, TriangulationEdges::Number other,

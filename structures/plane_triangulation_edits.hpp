@@ -65,12 +65,7 @@ void PlaneTriangulationRule<Path, What>::remove(Id id, Pen& repair) {
     std::replace(same_as_.begin(), same_as_.end(), id, next);
     same_as_[next] = nobody;
     --hidden_;
-    const Edge first = mesh_.from(next);
-    Edge h = first;
-    do {
-      touched_.push_back(h / 3);
-      h = mesh_.clockwise(h);
-    } while (h != first);
+    mesh_.for_each_from(next, [&](Edge h) { touched_.push_back(h / 3); });
     return certify_touched(repair);
   }
   const Predicates is{repair.elements(), repair.now()};
@@ -147,7 +142,9 @@ void PlaneTriangulationRule<Path, What>::report_touched(Pen& repair) {
 template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::report_moved(Id id, Pen& repair) {
   if constexpr (What == Criterion::delaunay) {
-    edges_.for_each_at(id, mesh_, [&](TriangulationEdges::Number edge) {
+    mesh_.for_each_from(id, [&](Edge h) {
+      const TriangulationEdges::Number edge = edges_.of(h);
+      if (edge == TriangulationEdges::none) return;
       repair.report(EdgeChange{EdgeChange::What::moved, edge, edges_.ends(edge)});
     });
   }

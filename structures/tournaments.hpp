@@ -1,12 +1,15 @@
 // The part that rules with tournaments have in common: which match a slot is, what it proves, and how it is played.
 #pragma once
 
+#include "kds/audit.hpp"
 #include "kds/framework/kinetic_rule.hpp"
 #include "structures/bracket.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace kds::structures {
@@ -16,13 +19,16 @@ namespace kds::structures {
 ///
 ///     better(i, j, tournament, elements) const      certificate that element i is not worse than j
 ///
-/// Slot: match * tournaments + tournament. There is no match 0: the first slots are for what else the rule certifies.
+/// Slot: match * tournaments + tournament. There is no match 0, and no certificate in its slots: they are for what else
+/// the rule certifies.
 ///
 /// Cost: O(log n) certificates where an element comes, goes or changes, or a certificate fails; n - 1 certificates for
 /// each tournament (compact), each element in O(log n) of them (local). Paper: [Basch99] section 3.2.
-template <class Rule, MovingElement Element>
+template <class Rule, MovingElement Entrant>
 class Tournaments {
  public:
+  using Element = Entrant;
+
   explicit Tournaments(std::size_t tournaments) : brackets_(tournaments) {}
 
   auto certificate(Slot slot, const MovingSet<Element>& x) const {
@@ -57,14 +63,28 @@ class Tournaments {
     brackets_[i].reserve(id + std::size_t{1}, beats(i, repair), marks(i, repair));
     brackets_[i].set(id, true, beats(i, repair), marks(i, repair));
   }
-  /// Lets one out, if it is there.
+  /// Lets one out, wherever it is.
   template <class Pen>
-  void leave(Id id, std::size_t i, Pen& repair) {
-    if (contains(id, i)) brackets_[i].set(id, false, beats(i, repair), marks(i, repair));
+  void leave(Id id, Pen& repair) {
+    for (std::size_t i = 0; i < brackets_.size(); ++i) {
+      if (contains(id, i)) brackets_[i].set(id, false, beats(i, repair), marks(i, repair));
+    }
   }
 
-  void audit_matches() const {
-    for (const Bracket& each : brackets_) each.audit(Rule::name);
+  /// Throws AuditFailure unless each element is in so many tournaments, and nobody else is in any.
+  void audit_matches(const MovingSet<Element>& x, std::size_t tournaments) const {
+    std::size_t end = x.end_id();
+    for (const Bracket& each : brackets_) {
+      each.audit(Rule::name);
+      end = std::max(end, each.capacity());
+    }
+    for (Id id = 0; id < end; ++id) {
+      const auto here =
+          std::count_if(brackets_.begin(), brackets_.end(), [id](const Bracket& b) { return b.contains(id); });
+      if (static_cast<std::size_t>(here) == (x.contains(id) ? tournaments : 0)) continue;
+      throw AuditFailure(Rule::name + (": id " + std::to_string(id)) + ": is in " + std::to_string(here) +
+                         " tournaments");
+    }
   }
   /// A snapshot must have this many tournaments.
   template <class Archive>

@@ -56,27 +56,34 @@ class TriangleMesh {
   std::size_t size() const { return twin_.size() / 3 - free_.size(); }  ///< triangles, infinite ones included
   bool empty() const { return size() == 0; }
 
-  /// How many edges a vertex has.
-  std::size_t valence(Id vertex) const {
-    std::size_t count = 0;
+  /// Calls f with each half-edge from a vertex, clockwise, until it gives true. Whether it has. Precondition:
+  /// contains(vertex).
+  template <class F>
+  bool any_from(Id vertex, const F& f) const {
     const Edge first = from(vertex);
     Edge h = first;
     do {
-      ++count;
+      if (f(h)) return true;
       h = clockwise(h);
     } while (h != first);
+    return false;
+  }
+  /// The same for all of them.
+  template <class F>
+  void for_each_from(Id vertex, const F& f) const {
+    any_from(vertex, [&f](Edge h) { return f(h), false; });
+  }
+
+  /// How many edges a vertex has.
+  std::size_t valence(Id vertex) const {
+    std::size_t count = 0;
+    for_each_from(vertex, [&count](Edge) { ++count; });
     return count;
   }
 
   /// Whether an edge leads from a to b. O(valence of a).
   bool connected(Id a, Id b) const {
-    const Edge first = from(a);
-    Edge h = first;
-    do {
-      if (target(h) == b) return true;
-      h = clockwise(h);
-    } while (h != first);
-    return false;
+    return any_from(a, [&](Edge h) { return target(h) == b; });
   }
 
   void clear() { *this = {}; }
@@ -152,12 +159,7 @@ class TriangleMesh {
 
   /// Gives a vertex another id. Precondition: the other is not in the mesh.
   void rename(Id vertex, Id other) {
-    const Edge first = from(vertex);
-    Edge h = first;
-    do {
-      set_origin(h, other);
-      h = clockwise(h);
-    } while (h != first);
+    for_each_from(vertex, [&](Edge h) { set_origin(h, other); });
     from_[vertex] = none;
   }
 

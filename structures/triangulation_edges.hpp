@@ -55,22 +55,6 @@ class TriangulationEdges {
   /// One of an edge's two half-edges. Precondition: contains(edge).
   TriangleMesh::Edge half_edge(Number edge) const { return half_edge_[edge]; }
 
-  /// The ends of an edge, and the third corner of one of the two triangles beside it, 0 or 1: TriangleMesh::infinite on
-  /// the outer side of an edge of the hull. Precondition: contains(edge).
-  std::array<Id, 3> corners_beside(Number edge, std::size_t side, const TriangleMesh& mesh) const {
-    const TriangleMesh::Edge h = side == 0 ? half_edge_[edge] : mesh.twin(half_edge_[edge]);
-    return {mesh.origin(h), mesh.target(h), mesh.apex(h)};
-  }
-  /// Calls f with the number of each edge at a vertex of the mesh.
-  template <class F>
-  void for_each_at(Id vertex, const TriangleMesh& mesh, const F& f) const {
-    const TriangleMesh::Edge first = mesh.from(vertex);
-    TriangleMesh::Edge h = first;
-    do {
-      if (of_[h] != none) f(of_[h]);
-      h = mesh.clockwise(h);
-    } while (h != first);
-  }
 
   /// Takes up the triangles whose corners or neighbours have changed, and calls report(EdgeChange) for each edge that
   /// went, then for each that came. A triangle may be named twice, and need not be in use any more.

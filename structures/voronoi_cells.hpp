@@ -4,6 +4,7 @@
 #include "kds/audit.hpp"
 #include "kds/motion.hpp"
 #include "structures/delaunay.hpp"
+#include "structures/triangulation_subset.hpp"
 
 #include <algorithm>
 #include <array>
@@ -45,26 +46,31 @@ struct NeighboursChange {
 ///     Kinetic<VoronoiCellsRule<Path>> cells(triangulation, now);
 ///     cells.rule().cell(id, points, now)
 ///
+/// or on a periodic one, VoronoiCellsRule<Path, PeriodicDelaunayRule<Path>>, where neighbours are copies of points, and
+/// all cells are bounded.
+///
 /// It reports each point whose neighbours have become others (NeighboursChange), so that other rules may stand on it.
 ///
 /// Cost, besides that of the triangulation: no certificates and no events of its own; O(neighbours) for each corner of
-/// a triangle that changes, of which a flip has four. All events that it follows are external. Memory: an id for each
-/// neighbour.
+/// a triangle that changes, of which a flip has four. All events that it follows are external. Memory: two ids for
+/// each neighbour.
 ///
 /// If four or more points stay on one circle, two of them that the triangulation joins are neighbours, and the side
 /// between them may have the length 0. Points that stay in one place share a cell. While all points stay on one line
 /// nothing is known (DelaunayRule::flat).
-template <class Path>
-class VoronoiCellsRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
+template <class Path, class Delaunay = DelaunayRule<Path>>
+class VoronoiCellsRule : public StandsOn<Delaunay, TriangleChange> {
  public:
   static constexpr const char* name = "VoronoiCells";
   using Element = Path;
   using Change = NeighboursChange;
+  /// An id; or a VertexCopy, displaced against vertex(id) itself (PeriodicDelaunayRule::vertex).
+  using Neighbour = typename Delaunay::Corner;
   using Pen = RepairOf<VoronoiCellsRule>;
 
   /// Counter-clockwise; of an unbounded cell those on the hull are the first and the last, of a bounded one the lowest
-  /// id is the first. Empty if the point is not there, or nothing is known. O(1).
-  const std::vector<Id>& neighbours(Id id) const {
+  /// id is the first, or the lowest of its copies. Empty if the point is not there, or nothing is known. O(1).
+  const std::vector<Neighbour>& neighbours(Id id) const {
     const Id vertex = this->inner().vertex(id);
     return vertex < around_.size() ? around_[vertex].neighbours : nowhere_.neighbours;
   }
@@ -74,7 +80,7 @@ class VoronoiCellsRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   /// At a time t, not before the last event or after the next one of the triangulation. Vertices are computed in
   /// double-doubles relative to the point and rounded; where a triangle is flat at t itself its vertex is infinitely
   /// far, and so not finite. Throws std::out_of_range if there is no such point, or nothing is known of it. Not for
-  /// samples. O(neighbours).
+  /// samples. Of points that share a vertex it is the cell of that. O(neighbours).
   VoronoiCell cell(Id id, const MovingSet<Path>& points, double t) const;
 
   std::monostate certificate(Slot /*slot*/, const MovingSet<Path>& /*elements*/) const { return {}; }
@@ -90,6 +96,7 @@ class VoronoiCellsRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
   }
 
   void audit(const MovingSet<Path>& /*elements*/, double /*now*/) const {
+    corners_.audit(this->inner().mesh(), origin_of());
     for (Id id = 0; id < std::max<std::size_t>(around_.size(), this->inner().mesh().end_vertex()); ++id) {
       if ((id < around_.size() ? around_[id] : nowhere_) != look(id)) {
         throw AuditFailure(name + (": point " + std::to_string(id)) + ": has other neighbours");
@@ -99,12 +106,12 @@ class VoronoiCellsRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(around_);
+    archive(around_, corners_);
   }
 
  private:
   struct Around {
-    std::vector<Id> neighbours;
+    std::vector<Neighbour> neighbours;
     bool bounded = true;
 
     friend bool operator==(const Around&, const Around&) = default;
@@ -114,13 +121,16 @@ class VoronoiCellsRule : public StandsOn<DelaunayRule<Path>, TriangleChange> {
     }
   };
 
+  auto origin_of() const {
+    return [this](TriangleMesh::Edge h) { return this->inner().mesh().origin(h); };
+  }
   /// What the triangulation says of a point.
   Around look(Id id) const;
   bool take_up(Id id, Pen& repair);
 
   std::vector<Around> around_;  ///< by vertex
   Around nowhere_;
-  std::vector<Id> gone_;
+  PartsOfTriangles corners_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -142,72 +152,64 @@ std::array<double, 2> circle_centre(const Path& from, const Path& a, const Path&
 
 }  // namespace detail
 
-template <class Path>
-VoronoiCell VoronoiCellsRule<Path>::cell(Id id, const MovingSet<Path>& points, double t) const {
+template <class Path, class Delaunay>
+VoronoiCell VoronoiCellsRule<Path, Delaunay>::cell(Id id, const MovingSet<Path>& points, double t) const {
   if (neighbours(id).empty()) {
     throw std::out_of_range(std::string(name) + ": nothing is known of a point " + std::to_string(id));
   }
-  VoronoiCell cell{neighbours(id), {}, bounded(id)};
-  const Path& at = points[id];
-  const std::size_t n = cell.neighbours.size();
+  const Id vertex = this->inner().vertex(id);
+  const auto& around = neighbours(vertex);
+  const auto place = [&](const Neighbour& neighbour) -> decltype(auto) {
+    return this->inner().place(neighbour, points);
+  };
+  VoronoiCell cell{{}, {}, bounded(vertex)};
+  const std::size_t n = around.size();
+  for (const Neighbour& neighbour : around) cell.neighbours.push_back(id_of(neighbour));
   for (std::size_t i = 0; i < (cell.bounded ? n : n - 1); ++i) {
-    const auto centre = detail::circle_centre(at, points[cell.neighbours[i]], points[cell.neighbours[(i + 1) % n]], t);
-    cell.vertices.push_back({at.axis(0)(t) + centre[0], at.axis(1)(t) + centre[1]});
+    const auto centre =
+        detail::circle_centre(place(Neighbour{vertex}), place(around[i]), place(around[(i + 1) % n]), t);
+    cell.vertices.push_back({points[vertex].axis(0)(t) + centre[0], points[vertex].axis(1)(t) + centre[1]});
   }
   if (!cell.bounded) {  // outwards, at right angles to the edges of the hull, which has the points on its left
-    const auto outwards = [t](const Path& from, const Path& to) {
-      return VoronoiCell::Vector{static_cast<double>(extended_difference(to.axis(1), from.axis(1), t).middle),
-                                 static_cast<double>(extended_difference(from.axis(0), to.axis(0), t).middle)};
+    const auto outwards = [&](const Neighbour& from, const Neighbour& to) {
+      const auto& p = place(from);
+      const auto& q = place(to);
+      return VoronoiCell::Vector{static_cast<double>(extended_difference(q.axis(1), p.axis(1), t).middle),
+                                 static_cast<double>(extended_difference(p.axis(0), q.axis(0), t).middle)};
     };
-    cell.directions = {outwards(at, points[cell.neighbours.front()]), outwards(points[cell.neighbours.back()], at)};
+    cell.directions = {outwards(Neighbour{vertex}, around.front()), outwards(around.back(), Neighbour{vertex})};
   }
   return cell;
 }
 
-template <class Path>
-auto VoronoiCellsRule<Path>::look(Id id) const -> Around {
-  const TriangleMesh& mesh = this->inner().mesh();
+template <class Path, class Delaunay>
+auto VoronoiCellsRule<Path, Delaunay>::look(Id id) const -> Around {
   Around around;
-  if (!mesh.contains(id)) return around;
-  std::vector<Id>& ids = around.neighbours;
-  TriangleMesh::Edge h = mesh.from(id);
-  do {
-    ids.push_back(mesh.target(h));
-    h = mesh.counter_clockwise(h);
-  } while (h != mesh.from(id));
-  const auto at_infinity = std::find(ids.begin(), ids.end(), TriangleMesh::infinite);
-  around.bounded = at_infinity == ids.end();
-  std::rotate(ids.begin(), around.bounded ? std::min_element(ids.begin(), ids.end()) : at_infinity, ids.end());
-  if (!around.bounded) ids.erase(ids.begin());
+  if (!this->inner().mesh().contains(id)) return around;
+  std::vector<Neighbour>& all = around.neighbours;
+  this->inner().mesh().for_each_from(id, [&](TriangleMesh::Edge h) { all.push_back(this->inner().corners(h)[1]); });
+  std::reverse(all.begin(), all.end());
+  const auto at_infinity = std::find_if(all.begin(), all.end(), Delaunay::at_infinity);
+  around.bounded = at_infinity == all.end();
+  std::rotate(all.begin(), around.bounded ? std::min_element(all.begin(), all.end()) : at_infinity, all.end());
+  if (!around.bounded) all.erase(all.begin());
   return around;
 }
 
 /// Whether its neighbours are others.
-template <class Path>
-bool VoronoiCellsRule<Path>::take_up(Id id, Pen& repair) {
+template <class Path, class Delaunay>
+bool VoronoiCellsRule<Path, Delaunay>::take_up(Id id, Pen& repair) {
   if (id >= around_.size()) around_.resize(id + std::size_t{1});
-  Around before = std::exchange(around_[id], look(id));
+  const Around before = std::exchange(around_[id], look(id));
   if (around_[id] == before) return false;
   repair.report({id});
-  for (const Id other : before.neighbours) {  // one that has left the triangulation is no corner of any triangle
-    if (!this->inner().mesh().contains(other)) gone_.push_back(other);
-  }
   return true;
 }
 
-template <class Path>
-Effect VoronoiCellsRule<Path>::follow(std::span<const TriangleChange> changes, Pen& repair) {
+template <class Path, class Delaunay>
+Effect VoronoiCellsRule<Path, Delaunay>::follow(std::span<const TriangleChange> changes, Pen& repair) {
   bool other = false;
-  const TriangleMesh& mesh = this->inner().mesh();
-  gone_.clear();
-  for (const TriangleChange& change : changes) {
-    if (change.triangle >= mesh.end_triangle() || !mesh.in_use(change.triangle)) continue;
-    for (TriangleMesh::Edge h = 3 * change.triangle; h < 3 * change.triangle + 3; ++h) {
-      if (mesh.origin(h) != TriangleMesh::infinite) other = take_up(mesh.origin(h), repair) || other;
-    }
-  }
-  for (std::size_t i = 0; i < gone_.size(); ++i) other = take_up(gone_[i], repair) || other;
-  for (Id id = 0; id < around_.size() && this->inner().flat(); ++id) other = take_up(id, repair) || other;
+  for (const Id id : corners_.take_up(changes, this->inner().mesh(), origin_of())) other = take_up(id, repair) || other;
   return other ? Effect::external : Effect::internal;
 }
 

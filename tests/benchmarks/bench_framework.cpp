@@ -18,6 +18,7 @@
 #include "structures/gabriel_graph.hpp"
 #include "structures/growing_segments.hpp"
 #include "structures/heap.hpp"
+#include "structures/k_nearest.hpp"
 #include "structures/periodic_delaunay.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
@@ -185,6 +186,18 @@ void measure_plane(Id n, double end, int rounds) {
   };
   on_delaunay("closest pair, on Delaunay", structures::ClosestPairRule<Path>{});
   on_delaunay("Gabriel graph, on Delaunay", structures::GabrielGraphRule<Path>{});
+  measure("4 nearest of all, on Delaunay and Voronoi cells", Degree, n, rounds, [&] {
+    Random random(n);
+    MovingSet<Path> set;
+    for (Id id = 0; id < n; ++id) set.insert(id, random_path<Degree>(random), 0);
+    Kinetic<structures::DelaunayRule<Path>> triangulation(set, 0);
+    Kinetic<structures::VoronoiCellsRule<Path>> cells(triangulation, 0);
+    Kinetic<structures::KNearestRule<Path>> nearest(cells, 0, structures::KNearestRule<Path>(4));
+    triangulation.extend_horizon(0, end);
+    nearest.extend_horizon(0, end);
+    const Cost cost = run(end, triangulation, cells, nearest);
+    return std::pair(cost, nearest.measures());
+  });
   // Of about the points' distances: half of the triangles are in the complex.
   on_delaunay("alpha complex, on Delaunay", structures::AlphaComplexRule<Path>(0.5 / std::sqrt(n)));
 }
@@ -209,6 +222,28 @@ void measure_space(Id n, double end, int rounds) {
   measure("regular in space", Degree, n, end, rounds, structures::RegularTriangulationRule<Weighted>{}, weighted);
 }
 
+/// An end that grows is inserted among n others, after a hundredth of a second.
+void measure_insertion(Id n, int rounds) {
+  std::vector<double> ratios;
+  for (int round = 0; round < rounds; ++round) {
+    Random random(n);
+    MovingSet<structures::GrowingEnd> set;
+    const auto end = [&] { return structures::GrowingEnd{random_path<1>(random)}; };
+    for (Id id = 0; id < n; ++id) set.insert(id, end(), 0);
+    Kinetic<structures::GrowingSegmentsRule> structure(set, 0);
+    run(0.01, structure);
+    constexpr Id more = 50;
+    const double start = thread_seconds();
+    for (Id id = n; id < n + more; ++id) {
+      auto next = end();
+      next.path.start = 0.01;
+      set.insert(id, next, 0.01);
+    }
+    ratios.push_back((thread_seconds() - start) / more / tuned_list<1>(1000, duration(1000)).per_event());
+  }
+  std::printf("insertion of an end that grows / swap of a tuned list of 1 000,1,%u,50,%.0f\n", n, median(ratios));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -216,6 +251,7 @@ int main(int argc, char** argv) {
   std::printf("what,degree,n,swaps,time ratio\n");
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<1>(n, rounds);
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<2>(n, rounds);
+  for (const Id n : {100u, 1000u, 10000u}) measure_insertion(n, n < 10000 ? rounds : 1);
   std::printf(
       "\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
       "time of an event / swap of a tuned list\n");

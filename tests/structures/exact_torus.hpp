@@ -53,12 +53,9 @@ class ExactTorus {
   int inside(const std::array<Copy, 3>& corners) const {
     int count = 0;
     for (const auto& [id, path] : paths_) {
-      const Copy near{id, copies_between(id, corners[0].id, 0) + corners[0].along,
-                      copies_between(id, corners[0].id, 1) + corners[0].up};
-      for (int i = -reach_[0]; i <= reach_[0]; ++i) {
-        for (int j = -reach_[1]; j <= reach_[1]; ++j) {
-          count += is_inside(corners, {id, near.along + i, near.up + j});
-        }
+      for (Copy copy : copies_near(id, corners[0].id)) {
+        copy.along += corners[0].along, copy.up += corners[0].up;
+        count += is_inside(corners, copy);
       }
     }
     return count;
@@ -78,6 +75,34 @@ class ExactTorus {
   int compare_distances(const Copy& a, const Copy& b, const Copy& c, const Copy& d) const {
     const auto u = from(a, b), v = from(c, d);
     return sign(u[0] * u[0] + u[1] * u[1] - (v[0] * v[0] + v[1] * v[1]));
+  }
+  /// All copies of a point that may be within a rectangle's diagonal of another, which no empty circle is wider than.
+  std::vector<Copy> copies_near(Id id, Id other) const {
+    std::vector<Copy> copies;
+    for (int i = -reach_[0]; i <= reach_[0]; ++i) {
+      for (int j = -reach_[1]; j <= reach_[1]; ++j) {
+        copies.push_back({id, copies_between(id, other, 0) + i, copies_between(id, other, 1) + j});
+      }
+    }
+    return copies;
+  }
+  /// -1 if c is inside the disc that has a and b as ends of a diameter, 0 if it stays on its border.
+  int outside_disc(const Copy& a, const Copy& b, const Copy& c) const {
+    const auto near = [](const auto& u, const auto& v) { return u[0] * v[0] + u[1] * v[1]; };
+    const auto p = about_from(c, a), q = about_from(c, b);
+    const double value = near(p, q);  // off by less than 10 roundings of the product of the lengths
+    if (std::abs(value) > 1e-14 * std::hypot(p[0], p[1]) * std::hypot(q[0], q[1])) return value > 0 ? 1 : -1;
+    return sign(near(from(c, a), from(c, b)));
+  }
+  /// Sign of 2 r - |a - b|.
+  int compare_diameter(double r, const Copy& a, const Copy& b) const {
+    return sign(oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - square(from(a, b)));
+  }
+  /// Sign of r - the radius of the circle through a, b, c: by the law of sines.
+  int compare_circle(double r, const std::array<Copy, 3>& c) const {
+    const auto doubled = area(c);
+    const auto product = square(from(c[0], c[1])) * square(from(c[1], c[2])) * square(from(c[2], c[0]));
+    return sign(doubled * doubled * oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - product);
   }
   /// The copy of a point that is the nearest to another: along each axis it is not farther than half a period, so it is
   /// the one that is found by rounding, or next to that.
@@ -110,6 +135,7 @@ class ExactTorus {
     }
     return result;
   }
+  static oracle::Polynomial square(const Vector& u) { return u[0] * u[0] + u[1] * u[1]; }
   std::array<double, 2> about_from(const Copy& a, const Copy& b) const {
     std::array<double, 2> result{};
     for (const std::size_t d : {std::size_t{0}, std::size_t{1}}) {

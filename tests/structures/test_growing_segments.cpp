@@ -300,4 +300,45 @@ TEST_CASE("growing segments: degeneracies", "[growing_segments][degeneracy]") {
   }
 }
 
+TEST_CASE("of many ends, those that are inserted when they begin do as those that were there before",
+          "[growing_segments]") {
+  const std::uint64_t seed = 780;
+  CAPTURE(seed);
+  Random random(seed);
+  constexpr Id n = 600;  // many more than an end keeps in order
+  std::vector<GrowingEnd> ends;
+  for (Id id = 0; id < n; ++id) {
+    const double start = id % 2 == 0 ? 0 : random.between(0, 0.4);
+    ends.push_back(end_at(random.unit(), random.unit(), random.between(-1, 1), random.between(-1, 1), start));
+  }
+  MovingSet<GrowingEnd> all, some;
+  for (Id id = 0; id < n; ++id) {
+    all.insert(id, ends[id], 0);
+    if (ends[id].path.start == 0) some.insert(id, ends[id], 0);
+  }
+  Kinetic<GrowingSegmentsRule> known(all, 0), told(some, 0);
+  Simulator known_before(0, known), told_later(0, told);
+  std::vector<Id> later;
+  for (Id id = 0; id < n; ++id) {
+    if (!some.contains(id)) later.push_back(id);
+  }
+  std::sort(later.begin(), later.end(), [&](Id a, Id b) { return ends[a].path.start < ends[b].path.start; });
+  for (const Id id : later) {
+    told_later.advance_to(ends[id].path.start);
+    some.insert(id, ends[id], ends[id].path.start);
+  }
+  int wrong = 0, stopped = 0;
+  for (double t = 0.5; t < 4; t += 0.5) {
+    known_before.advance_to(t), told_later.advance_to(t);
+    known_before.audit(), told_later.audit();
+    for (Id id = 0; id < n; ++id) {
+      wrong += known.rule().stop_time(id) != told.rule().stop_time(id);
+      wrong += known.rule().stopped_by(id) != told.rule().stopped_by(id);
+      stopped += t == 3.5 && told.rule().stopped_by(id) != nobody;
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(stopped > 500);
+}
+
 }  // namespace test_growing_segments

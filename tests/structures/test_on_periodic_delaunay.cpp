@@ -5,7 +5,7 @@
 #include "structures/periodic_delaunay.hpp"
 #include "structures/spanning_tree.hpp"
 #include "tests/structures/exact_torus.hpp"
-#include "tests/structures/random_values.hpp"
+#include "tests/structures/periodic_motion.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -119,16 +119,8 @@ void try_on_periodic(std::uint64_t first_seed, const Check& check) {
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = first_seed; seed < first_seed + 2; ++seed) {
       CAPTURE(static_cast<int>(kind), seed);
-      const auto make = [](Random& random, Kind of, double now) {
-        Path path = random_plane_motion<1>(random, of, now);
-        // Those of large numbers would run round the rectangle 1 000 000 times a second.
-        for (auto& coordinate : path.coordinate) {
-          if (of == Kind::scales) coordinate.c[1] *= 0x1p-20;
-        }
-        return path;
-      };
       const TrialOptions options{seed, kind, 6, 3 * (seed % 3), 8, seed % 2 == 0 ? never : 0.4, 16};
-      const Findings found = try_rule(options, Rule{}, make, check);
+      const Findings found = try_rule(options, Rule{}, random_periodic_motion, check);
       CHECK(found.first == "");
       events += found.events.size();
     }

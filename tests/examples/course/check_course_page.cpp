@@ -27,9 +27,7 @@ bool near(double a, double b) { return std::abs(a - b) <= 1e-9 * (1 + std::abs(b
 /// Where everything is drawn: dots, ends of edges and corners of the outline.
 void check_places(const CoursePage& page, const Expected& expected, const json& frame) {
   const double t = frame["time"];
-  const auto place = [&](Id id) {
-    return expected.positions.empty() ? page.position(id, t) : expected.positions[id];
-  };
+  const auto place = [&](Id id) { return expected.positions.empty() ? page.position(id, t) : expected.positions[id]; };
   // From a number on, of `shown` the two or three coordinates that a picture has.
   const std::size_t coordinates = page.in_space() ? 3 : 2;
   const auto check = [&](Id id, const json& shown, std::size_t first, const char* what) {
@@ -128,6 +126,10 @@ int main(int argc, char** argv) {
     for (const json& pair : report["overlaps"]) wrong("texts overlap: ", pair[0], " and ", pair[1]);
     if (report["width"][0] > report["width"][1]) wrong("the page is wider than its window: ", report["width"]);
     if (report["widened"][0] > report["widened"][1]) wrong("larger text is wider than the window: ", report["widened"]);
+    const auto& links = report["links"];
+    if (links.size() < 2 || std::count(links.begin(), links.end(), json("index.html")) != 1)
+      wrong("it leads to ", links);
+    if (report["code"].get<std::string>().find("int main(") == std::string::npos) wrong("it does not show its program");
     if (!(report["larger"][0] > report["larger"][1])) wrong("larger text is not larger: ", report["larger"]);
     if (page.on_line() != report.contains("axes")) wrong("the ends of the time axis are not reported");
     for (const json& end : report.value("axes", json::array())) {

@@ -90,6 +90,10 @@ window.addEventListener('load', () => {
   report.keys.splice(-2);
   report.width = [document.documentElement.scrollWidth, window.innerWidth];
 
+  // What the page leads to, and the program beside it.
+  report.links = [...document.querySelectorAll('nav a')].map((link) => link.getAttribute('href'));
+  report.code = document.querySelector('#code pre').textContent;
+
   // Space is turned by dragging, which draws it at once. The canvas has its pixels until the next frame.
   if (window.course.data.view === 'space') {
     const canvas = document.getElementById('space');

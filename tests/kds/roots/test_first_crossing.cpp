@@ -126,6 +126,26 @@ TEMPLATE_TEST_CASE_SIG("what isolation says of balls holds for all they contain"
   CHECK(decided > 20);
 }
 
+TEMPLATE_TEST_CASE_SIG("what isolation says holds exactly where powers of the scale are near the ends of the doubles",
+                       "[first_crossing]", ((int Degree), Degree), 10, 11, 12, 13, 16, 31) {
+  const std::uint64_t seed = 3300;
+  Random random(seed + Degree);
+  int wrong = 0, decided = 0;
+  for (int round = 0; round < 200; ++round) {
+    // Only the last terms count against a small constant one, so that the scale is small, and its powers tiny.
+    Polynomial<Degree> p{};
+    p.c[0] = std::abs(random.scaled(-1000, 0));
+    for (std::size_t i = Degree - 1 - random.below(3); i <= Degree; ++i) p.c[i] = random.scaled(700, 1000);
+    const double end = std::abs(random.scaled(-150, -30));
+    const Crossing crossing = first_crossing(balls(p), end);
+    wrong += !holds(crossing, p, end);
+    decided += crossing.status != Status::undecided;
+  }
+  CAPTURE(Degree, seed);
+  CHECK(wrong == 0);
+  CHECK(decided > 0);
+}
+
 TEMPLATE_TEST_CASE_SIG("ordinary polynomials are decided", "[first_crossing]", FOR_EACH_DEGREE) {
   const std::uint64_t seed = 3200;
   Random random(seed + Degree);
