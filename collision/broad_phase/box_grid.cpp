@@ -28,7 +28,7 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
   // A box that has become a little smaller stays at its level.
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
   const Item to{BoxBounds(box), kept_rounding(rounding), 0, level, false, items_[id].kind, slant != nullptr};
-  if (level == before) return move(id, to, slant, changes, alone);
+  if (level == before && !slant && !items_[id].slanted) return move(id, to, changes, alone);
   const std::size_t levels = levels_.size();
   use_level(level);
   if (levels_.size() > levels) restart_guests();
@@ -53,8 +53,7 @@ bool BoxGrid::report_once(Id id) { return std::exchange(items_[id].reported, sea
 /// Appends what overlaps just one of two places of a box. Without slants nothing is called in the loop, so that what it
 /// compares with stays in registers.
 template <bool slants>
-inline void BoxGrid::compare(const Places& places, const CellTable::Found& found, Changes& changes) {
-  const auto& [from, slant_from, to, slant_to] = places;
+inline void BoxGrid::compare(const Item& from, const Item& to, const CellTable::Found& found, Changes& changes) {
   const BoxOverlaps overlaps(from.bounds, from.rounding, to.bounds, to.rounding);
   constexpr unsigned only_before = 1, only_after = 2;
   const unsigned met = meetings_[to.kind];
@@ -62,8 +61,8 @@ inline void BoxGrid::compare(const Places& places, const CellTable::Found& found
     Item& other = items_[number];
     unsigned overlap = overlaps.with(other.bounds, other.rounding);
     if constexpr (slants) {
-      if ((overlap & only_before) != 0 && apart(from.bounds, slant_from, number)) overlap &= ~only_before;
-      if ((overlap & only_after) != 0 && apart(to.bounds, slant_to, number)) overlap &= ~only_after;
+      if ((overlap & only_before) != 0 && apart(from.bounds, nullptr, number)) overlap &= ~only_before;
+      if ((overlap & only_after) != 0 && apart(to.bounds, nullptr, number)) overlap &= ~only_after;
     }
     if (overlap != only_before && overlap != only_after) continue;
     if ((met >> other.kind & 1) == 0 || !report_once(number)) continue;
@@ -97,7 +96,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
     const bool native = level.exponent == item.level;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_guests(level, kind, ends, found);
+      if (native) search_finer(level, item, id, kind, found);
     });
     if (native) {
       level.idle = 0;
@@ -193,7 +192,7 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
     if (alone) continue;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_guests(level, kind, ends, found);
+      if (native) search_finer(level, item, id, kind, found);
     });
   }
   if (alone) return;
@@ -210,14 +209,12 @@ void BoxGrid::remove(Id id, Changes& changes, bool alone) {
 
 /// Replaces a box by one of the same level: if they are near each other, one search finds all boxes that overlap
 /// either.
-void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone) {
+void BoxGrid::move(Id id, const Item& to, Changes& changes, bool alone) {
   const Item from = items_[id];
   auto level = find_level(to.level);
   constexpr double near = 2 * units_per_cell;  // units of the lattice: then searches are small at all levels
-  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, slant, changes, alone);
-  BoxSlant slant_before;
-  if (from.slanted) slant_before = slants_[id];
-  set_item(id, to, slant);
+  if (from.bounds.joined(to.bounds).extent() * level->scale > near) return put_anew(id, to, nullptr, changes, alone);
+  items_[id] = to;
   items_[id].entered = true;
   CellTable::Found found;
   begin_search(id);
@@ -243,27 +240,31 @@ void BoxGrid::move(Id id, const Item& to, const BoxSlant* slant, Changes& change
     count_guest(*level);
     replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
   }
-  const Places places{from, from.slanted ? &slant_before : nullptr, to, slant};
-  slants_.empty() ? compare<false>(places, found, changes) : compare<true>(places, found, changes);
+  slants_.empty() ? compare<false>(from, to, found, changes) : compare<true>(from, to, found, changes);
   tidy();
 }
 
 /// Takes a box out and inserts it again; boxes that overlap both before and after are not changes.
 void BoxGrid::put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone) {
-  const auto ended = static_cast<std::ptrdiff_t>(changes.ended.size());
-  const auto began = static_cast<std::ptrdiff_t>(changes.began.size());
-  leave(id, changes, alone);
+  Changes own;
+  leave(id, own, alone);
   set_item(id, to, slant);
-  enter(id, changes);
-  if (alone) return;
-  std::sort(changes.ended.begin() + ended, changes.ended.end());
-  std::sort(changes.began.begin() + began, changes.began.end());
-  std::vector<Id> both;
-  std::set_intersection(changes.ended.begin() + ended, changes.ended.end(), changes.began.begin() + began,
-                        changes.began.end(), std::back_inserter(both));
-  const auto is_both = [&](Id other) { return std::binary_search(both.begin(), both.end(), other); };
-  changes.ended.erase(std::remove_if(changes.ended.begin() + ended, changes.ended.end(), is_both), changes.ended.end());
-  changes.began.erase(std::remove_if(changes.began.begin() + began, changes.began.end(), is_both), changes.began.end());
+  enter(id, own);
+  if (!alone) own.leave_out_common();
+  changes.ended.insert(changes.ended.end(), own.ended.begin(), own.ended.end());
+  changes.began.insert(changes.began.end(), own.began.begin(), own.began.end());
+}
+
+void BoxGrid::Changes::leave_out_common() {
+  if (began.empty() || ended.empty()) return;
+  std::sort(began.begin(), began.end());
+  std::sort(ended.begin(), ended.end());
+  Ids common;
+  std::set_intersection(began.begin(), began.end(), ended.begin(), ended.end(), std::back_inserter(common));
+  for (Ids* const ids : {&began, &ended}) {
+    const auto in_both = [&](Id id) { return std::binary_search(common.begin(), common.end(), id); };
+    ids->erase(std::remove_if(ids->begin(), ids->end(), in_both), ids->end());
+  }
 }
 
 }  // namespace kds::collision

@@ -40,6 +40,10 @@ namespace kds::collision {
 /// Sources: [Ericson05] section 7.2 for hierarchical grids, [Teschner03] for hashing cells. Differs: guests have
 /// separate lists; ends on a lattice are stored in the cells.
 ///
+/// Of a long box perhaps only a prism counts (box_slant.hpp), which few of the guests of its large cell meet. Then the
+/// smaller boxes are sought along the prism, in the cells of the levels of which they are natives, where that costs
+/// less.
+///
 /// Boxes may be of several *kinds*, each with cells of its own in every level, so that a box is compared only with
 /// those of the kinds that its own meets.
 ///
@@ -68,6 +72,9 @@ class BoxGrid {
       began.clear();
       ended.clear();
     }
+
+    /// Takes out what has both begun and ended: these are no changes. `began` and `ended` are sorted then.
+    void leave_out_common();
   };
 
   explicit BoxGrid(const CellTuning& tuning = {}) : tuning_(tuning), room_per_extent_(tuning.roominess) {
@@ -106,8 +113,9 @@ class BoxGrid {
   double least_cell() const { return cell_side(finest_); }
 
   /// Inserts a box, or replaces the one of that number, with edges rounded by a radius (box_bounds.hpp). Appends to
-  /// `changes`. `alone`: whether the box that it replaces is known to overlap none of those that it meets. `slant`: of
-  /// the box only what is in that prism counts; null if all of it does.
+  /// `changes`. `alone`: what the box that it replaces overlaps is not sought, since that is nothing, or the caller
+  /// knows it; then all that overlaps the new box is told as begun, and nothing as ended. `slant`: of the box only what
+  /// is in that prism counts; null if all of it does.
   void put(Id id, const StaticBox& box, Changes& changes, double rounding = 0, bool alone = false,
            const BoxSlant* slant = nullptr);
 
@@ -123,6 +131,7 @@ class BoxGrid {
     for (Id id = 0; id < items_.size(); ++id) {
       if (contains(id)) items_[id].kind = new_kind(id);
     }
+    choose_cells_for_kinds();
     restart(natives_.room());
   }
 
@@ -215,6 +224,7 @@ class BoxGrid {
 
   struct Ends;
   struct Census;
+  struct Way;
 
   double cell_side(int exponent) const;
   Exponent level_for(double extent) const {
@@ -243,14 +253,8 @@ class BoxGrid {
   bool apart(const BoxBounds& bounds, const BoxSlant* slant, Id other) const {
     return (slant && slant->apart(items_[other].bounds)) || (items_[other].slanted && slants_[other].apart(bounds));
   }
-  struct Places {
-    const Item& from;
-    const BoxSlant* slant_from;
-    const Item& to;
-    const BoxSlant* slant_to;
-  };
   template <bool slants>
-  void compare(const Places& places, const CellTable::Found& found, Changes& changes);
+  void compare(const Item& from, const Item& to, const CellTable::Found& found, Changes& changes);
   template <bool slants>
   void take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping);
   void set_item(Id id, const Item& item, const BoxSlant* slant) {
@@ -262,12 +266,13 @@ class BoxGrid {
     slants_[id] = slant;
   }
   void leave(Id id, Changes& changes, bool alone);
-  void move(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
+  void move(Id id, const Item& to, Changes& changes, bool alone);
   void put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
   void drop_idle_level();
   void restart_guests();
   void tidy();
   void grow();
+  void choose_cells_for_kinds();
   void restart(std::size_t room);
   void refine();
   bool search_in(const Level& level, Kind kind, const StaticBox& box, Ids& found) const;
@@ -281,6 +286,11 @@ class BoxGrid {
   }
   void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
+  static void limit(CellTable::Block& block, std::size_t d, std::int64_t from, std::int64_t to, std::int64_t low,
+                    std::int64_t high);
+  void count_crowd(std::size_t chained, std::size_t cells);
+  void search_finer(const Level& level, const Item& item, Id id, Kind kind, CellTable::Found& found);
+  void follow(const Way& way, Kind kind, CellTable::Found& found);
 
   CellTuning tuning_;
   LargeVector<Item> items_;       // by id

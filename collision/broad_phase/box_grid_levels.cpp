@@ -4,6 +4,7 @@
 #include "kds/arithmetic/power_of_two.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <vector>
 
@@ -71,12 +72,24 @@ void BoxGrid::restart(std::size_t room) {
 
 /// More boxes, which may be elsewhere, may need other cells.
 void BoxGrid::grow() {
-  std::vector<Id> present;
-  for (Id id = 0; id < items_.size(); ++id) {
-    if (contains(id)) present.push_back(id);
-  }
-  choose_cells(typical_spacing(present.size(), [&](std::size_t i) { return box(present[i]); }));
+  choose_cells_for_kinds();
   restart(2 * natives_.size());
+}
+
+/// Each kind has cells of its own. They suit the sparsest of the kinds that many boxes have: more boxes in a cell cost
+/// less than more cells. Precondition: restart() is next.
+void BoxGrid::choose_cells_for_kinds() {
+  std::array<std::vector<Id>, kinds> of;
+  for (Id id = 0; id < items_.size(); ++id) {
+    if (contains(id)) of[items_[id].kind].push_back(id);
+  }
+  const auto few = [&](const std::vector<Id>& ids) { return ids.size() * tuning_.share_for_cells < size_; };
+  const std::vector<Id>* sparsest = nullptr;
+  for (const std::vector<Id>& ids : of) {
+    if (!ids.empty() && !few(ids) && (!sparsest || ids.size() < sparsest->size())) sparsest = &ids;
+  }
+  if (!sparsest) return;
+  choose_cells(typical_spacing(sparsest->size(), [&](std::size_t i) { return box((*sparsest)[i]); }));
 }
 
 /// Makes the smallest cells smaller if most boxes fit into them: for boxes that have gathered in one place.
@@ -155,6 +168,26 @@ void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& popula
   }
 }
 
+/// Cells from one to another along an axis, for boxes that overlap [low, high] there. Precondition: they are at most
+/// Block::longest.
+inline void BoxGrid::limit(CellTable::Block& block, std::size_t d, std::int64_t from, std::int64_t to, std::int64_t low,
+                           std::int64_t high) {
+  block.low[d] = from;
+  block.lengths[d] = static_cast<std::size_t>(to - from + 1);
+  assert(from <= to && block.lengths[d] <= CellTable::Block::longest);
+  for (std::int64_t cell = from; cell <= to; ++cell) {
+    const std::int64_t corner = cell * units_per_cell;
+    block.limits[d][static_cast<std::size_t>(cell - from)] =
+        lattice_byte(d, high - corner) | lattice_byte(d + 3, corner - low) | row_mark(d, cell);
+  }
+}
+
+/// Notes how many chained buckets a search of so many cells has visited.
+inline void BoxGrid::count_crowd(std::size_t chained, std::size_t cells) {
+  const std::int64_t allowed = tuning_.crowded_chain * static_cast<std::int64_t>(cells);
+  crowding_ = std::max<std::int64_t>(crowding_ + static_cast<std::int64_t>(chained) - allowed, 0);
+}
+
 /// Appends to `found` the boxes that overlap on the lattice, and maybe some others. Precondition: the box is at most a
 /// few cells large, or the population is in few; the population is not empty.
 void BoxGrid::search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
@@ -165,17 +198,105 @@ void BoxGrid::search(const CellTable& table, std::uint64_t family, const Populat
     const std::int64_t low = Ends::cell_of(std::max(box.values[d] - population.span, population.low[d]));
     const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], population.high[d]));
     if (low > high) return;
-    block.low[d] = low;
-    block.lengths[d] = static_cast<std::size_t>(high - low + 1);
-    assert(block.lengths[d] <= CellTable::Block::longest);
-    for (std::size_t i = 0; i < block.lengths[d]; ++i) {
-      const std::int64_t cell = low + static_cast<std::int64_t>(i);
-      block.limits[d][i] = box.limits(d, cell) | row_mark(d, cell);
+    limit(block, d, low, high, box.values[d], -box.values[d + 3]);
+  }
+  count_crowd(table.find(block, found), block.lengths[0] * block.lengths[1] * block.lengths[2]);
+}
+
+/// The way of a prism through the cells of a level, cut into pieces of some cells along its main axis, in each of which
+/// it moves across by two cells at most.
+struct BoxGrid::Way {
+  /// Across, where x along the main axis is 0: the least and the greatest coordinate in a piece, with those of the
+  /// boxes in its cells, and a unit for roundings.
+  struct Across {
+    std::size_t d;
+    double rate, low, high;
+  };
+
+  Way(const BoxSlant& slant, const Level& of_level, const Population& of_natives, const Item& item)
+      : level(of_level), natives(of_natives), box(item.bounds, level.scale), main(slant.main_axis()) {
+    first = Ends::cell_of(std::max(box.values[main] - natives.span, natives.low[main]));
+    last = Ends::cell_of(std::min(-box.values[main + 3], natives.high[main]));
+    double steepest = 0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const std::size_t d = (main + 1 + i) % 3;
+      const BoxSlant::Line line = slant.line(d);
+      across[i] = {d, line.rate, level.scale * (line.at - line.half) - 1, level.scale * (line.at + line.half) + 1};
+      steepest = std::max(steepest, std::abs(line.rate));
+      widest = std::max(widest, level.scale * line.half);
+    }
+    farthest = level.scale * slant.farthest();
+    step = steepest > 0.5 ? static_cast<std::int64_t>(2 / steepest) : longest;
+    const auto end = static_cast<double>(step * units_per_cell + natives.span);
+    for (Across& a : across) {
+      a.low += std::min(-a.rate, a.rate * end);
+      a.high += std::max(-a.rate, a.rate * end);
     }
   }
-  const auto cells = static_cast<std::int64_t>(block.lengths[0] * block.lengths[1] * block.lengths[2]);
-  const auto walked = static_cast<std::int64_t>(table.find(block, found));
-  crowding_ = std::max<std::int64_t>(crowding_ + walked - tuning_.crowded_chain * cells, 0);
+
+  std::int64_t pieces() const { return first > last ? 0 : (last - first) / step + 1; }
+  /// Whether roundings are less than a unit, and no piece has more cells than a block.
+  bool fits() const { return farthest < 0x1p40 && widest < units_per_cell; }
+
+  static constexpr std::int64_t longest = 4;  ///< piece
+  const Level& level;
+  const Population& natives;
+  Ends box;
+  std::size_t main;
+  std::int64_t first, last;  ///< cells along the main axis
+  std::int64_t step;         ///< of a piece, in cells
+  double widest = 0;
+  double farthest;
+  std::array<Across, 2> across;
+};
+
+/// Finds the boxes of finer levels. The guests of a large cell are many, and a prism meets few of them; it is followed
+/// through the cells of the natives where that costs less.
+void BoxGrid::search_finer(const Level& level, const Item& item, Id id, Kind kind, CellTable::Found& found) {
+  const Population& guests = level.of[kind].guests;
+  if (guests.count == 0) return;
+  if (item.slanted) {
+    boost::container::small_vector<Way, 4> ways;
+    std::int64_t pieces = 0;
+    bool fits = true;
+    for (const Level& finer : levels_) {
+      if (finer.exponent >= level.exponent) break;
+      const Population& natives = finer.of[kind].natives;
+      if (natives.count == 0) continue;
+      ways.emplace_back(slants_[id], finer, natives, item);
+      pieces += ways.back().pieces();
+      fits = fits && ways.back().fits();
+    }
+    if (fits && pieces * tuning_.guests_per_piece < static_cast<std::int64_t>(guests.count)) {
+      for (const Way& way : ways) follow(way, kind, found);
+      return;
+    }
+  }
+  search(guests_, level.family_of(kind), guests, Ends(item.bounds, level.scale), found);
+}
+
+void BoxGrid::follow(const Way& way, Kind kind, CellTable::Found& found) {
+  const auto& box = way.box.values;
+  const Population& natives = way.natives;
+  CellTable::Block block;
+  block.family = way.level.family_of(kind);
+  for (std::int64_t cell = way.first; cell <= way.last; cell += way.step) {
+    const auto x = static_cast<double>(cell * units_per_cell);
+    bool meets = true;
+    for (const auto& [d, rate, least, greatest] : way.across) {
+      const std::int64_t low = std::max<std::int64_t>(box[d], std::llrint(least + rate * x));
+      const std::int64_t high = std::min<std::int64_t>(-box[d + 3], std::llrint(greatest + rate * x));
+      const std::int64_t from = Ends::cell_of(std::max(low - natives.span, natives.low[d]));
+      const std::int64_t to = Ends::cell_of(std::min(high, natives.high[d]));
+      meets = from <= to;
+      if (!meets) break;
+      limit(block, d, from, to, low, high);
+    }
+    if (!meets) continue;
+    const std::size_t main = way.main;
+    limit(block, main, cell, std::min(cell + way.step - 1, way.last), box[main], -box[main + 3]);
+    count_crowd(natives_.find_few(block, found), block.lengths[0] * block.lengths[1] * block.lengths[2]);
+  }
 }
 
 }  // namespace kds::collision

@@ -6,7 +6,10 @@
 namespace kds::collision {
 
 BoxSlant::BoxSlant(const StaticBox& box, const Eigen::Vector3d& velocity) {
-  const double fastest = velocity.cwiseAbs().maxCoeff();
+  const Eigen::Vector3d speeds = velocity.cwiseAbs();
+  main_ = speeds[1] > speeds[0] ? 1 : 0;
+  if (speeds[2] > speeds[static_cast<int>(main_)]) main_ = 2;
+  const double fastest = speeds[static_cast<int>(main_)];
   for (int d = 0; d < 3; ++d) {
     const double along = velocity[d] / fastest;
     along_[static_cast<std::size_t>(d)] = {along, std::abs(along), box.min[d] + box.max[d], box.max[d] - box.min[d],

@@ -27,6 +27,9 @@ class PairListener {
   virtual bool filters_meet(std::uint64_t, std::uint64_t) const { return true; }
   virtual void pair_began(BodySlot a, BodySlot b, double t) = 0;
   virtual void pair_ended(BodySlot a, BodySlot b, double t) = 0;
+  /// If it lists the pairs of each body: calls visit(other) for each that has been reported as begun and not as ended,
+  /// in any order, and returns true. Broad phases that keep no such lists then need no search for them.
+  virtual bool visit_pairs(BodySlot, SlotVisitor) const { return false; }
 };
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.

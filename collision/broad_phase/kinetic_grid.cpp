@@ -81,6 +81,13 @@ inline std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, cons
   return std::nullopt;
 }
 
+/// Appends the partners of a body, if the listener knows them.
+template <int Degree>
+bool KineticGrid<Degree>::ended_pairs(BodySlot id, BoxGrid::Ids& ended, const PairListener& listener) {
+  const auto append = [&](BodySlot other) { ended.push_back(other); };
+  return listener.visit_pairs(id, append);
+}
+
 /// True if its fat box has begun or ceased to overlap others.
 template <int Degree>
 bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
@@ -92,7 +99,11 @@ bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, cons
   set_expiry(id, fat.expiry, now);
   BoxGrid::Changes changes;
   const std::optional<BoxSlant> part = slant(body, present);
-  fat_boxes_.put(id, fat.box, changes, body.box.rounding, body.partners == 0, part ? &*part : nullptr);
+  // Long boxes are far apart, so one search does not find what overlaps either.
+  const bool alone =
+      body.partners == 0 || ((part || fat_boxes_.slanted(id)) && ended_pairs(id, changes.ended, listener));
+  fat_boxes_.put(id, fat.box, changes, body.box.rounding, alone, part ? &*part : nullptr);
+  if (alone && body.partners > 0) changes.leave_out_common();
   report(id, changes, now, listener);
   if (in_vain_) separate(listener);
   return !changes.empty();
@@ -101,7 +112,8 @@ bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, cons
 template <int Degree>
 void KineticGrid<Degree>::remove(BodySlot id, double now, PairListener& listener) {
   BoxGrid::Changes changes;
-  fat_boxes_.remove(id, changes, bodies_[id].partners == 0);
+  const bool alone = bodies_[id].partners == 0 || ended_pairs(id, changes.ended, listener);
+  fat_boxes_.remove(id, changes, alone);
   expiry_.clear(id);
   report(id, changes, now, listener);
   leave_filter(id, now);

@@ -138,6 +138,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   std::optional<BoxSlant> slant(const Body& body, const StaticBox& present) const;
   double kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
   void adapt_travel(BodySlot id, double now);
+  static bool ended_pairs(BodySlot id, BoxGrid::Ids& ended, const PairListener& listener);
   bool renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
   void set_expiry(BodySlot id, double expiry, double now);
   double travel_factor(std::uint32_t begun) const;
@@ -156,15 +157,16 @@ class KineticGrid final : public BroadPhase<Degree> {
   CalendarQueue<> expiry_;  // slots are bodies; no time is later than the horizon
   std::size_t threads_;
   double horizon_ = never;
-  double first_travel_ = 0;   ///< of a new body
+  double first_travel_ = 0;  ///< of a new body
   /// How often a coarser level was wanted among the last fat boxes, and how many these are: of as many as there are
-  /// bodies. Wishes of all time would add up, and begin a level for a few that fly far, in whose cells all others crowd.
+  /// bodies. Wishes of all time would add up, and begin a level for a few that fly far, in whose cells all others
+  /// crowd.
   std::uint64_t wishes_ = 0;
   std::uint64_t boxes_since_ = 0;
   /// The first is of all bodies whose filters are not told apart; it has kind 0.
   std::array<Filter, 8> filters_{};
   bool expected_ = false;  ///< cells have been chosen for the bodies to come
-  bool in_vain_ = false;  ///< some filter should have a kind of its own
+  bool in_vain_ = false;   ///< some filter should have a kind of its own
   BroadPhaseCounters counters_;
 };
 

@@ -28,7 +28,7 @@ void KineticGrid<Degree>::join_filter(BodySlot id, const PairListener& listener)
 }
 
 /// The body has been removed. Bodies that live for a few boxes only would never find a good travel by themselves, so it
-/// is handed on: it adapts as in adapt_travel(), from body to body, but is no longer than the way of a whole life.
+/// is handed on: it adapts as in adapt_travel(), from body to body, but is no longer than twice the way of a life.
 template <int Degree>
 void KineticGrid<Degree>::leave_filter(BodySlot id, double now) {
   const Body& body = bodies_[id];
@@ -36,8 +36,9 @@ void KineticGrid<Degree>::leave_filter(BodySlot id, double now) {
   --filter.bodies;
   if (body.expiry == never) return;
   constexpr double part = 0.125;  // of a body in the mean of those before
+  constexpr double ways = 2;      // so that few lives need a second box
   const double way = body.speed * (now - body.entered);
-  const double travel = std::min({body.travel * travel_factor(body.begun), way, greatest_travel});
+  const double travel = std::min({body.travel * travel_factor(body.begun), ways * way, greatest_travel});
   if (travel > 0) filter.travel += (filter.travel > 0 ? part : 1) * (travel - filter.travel);
 }
 

@@ -3,8 +3,8 @@
 #include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
 #include "collision/broad_phase/box_overlap.hpp"
-#include "collision/motions.hpp"
 #include "collision/in_parts.hpp"
+#include "collision/motions.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs.hpp"
@@ -98,13 +98,8 @@ double Pairs<Motion>::horizon(const Pair& pair) const {
   return clock_.horizon;
 }
 
-template <class Motion>
-bool Pairs<Motion>::balls_are_quick() const {
-  return options_.response != Response::none;
-}
-
 /// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
-/// pairs, a time before which the balls do not meet, as BallsTogether tells it. Precondition: balls_are_quick().
+/// pairs, a time before which the balls do not meet, as BallsTogether tells it.
 template <class Motion>
 void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
   certificates::BallsTogether<Motion::degree> together;
@@ -112,11 +107,13 @@ void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
     const Pair& pair = pairs_[dirty_[i]];
     together.put(place, bodies_.mover(pair.a), bodies_.mover(pair.b));
   };
+  const auto are_balls = [&](Slot slot) {
+    return bodies_.mover(pairs_[slot].a).radius > 0 && bodies_.mover(pairs_[slot].b).radius > 0;
+  };
   const auto care_for = [&](std::size_t i) {
-    if (!std::isnan(estimates_[i])) return;
+    if (!std::isnan(estimates_[i]) || !are_balls(dirty_[i])) return;
     const auto& a = bodies_.mover(pairs_[dirty_[i]].a);
     const auto& b = bodies_.mover(pairs_[dirty_[i]].b);
-    if (!(a.radius > 0 && b.radius > 0)) return;
     const double t =
         certificates::BallSeparation<Motion::degree>{a.motion, b.motion, a.radius, b.radius}.apart_until(clock_.now);
     if (t > clock_.now) estimates_[i] = t <= clock_.horizon ? t : never;
@@ -127,7 +124,11 @@ void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
     together.earliest_approaches(clock_.now, clock_.horizon, &estimates_[i]);
     for (std::size_t k = 0; k < together.size; ++k) care_for(i + k);
   }
-  if (i == last) return;
+  const std::span<const Slot> few(dirty_.data() + i, last - i);
+  if (std::none_of(few.begin(), few.end(), are_balls)) {
+    std::fill_n(estimates_.begin() + static_cast<std::ptrdiff_t>(i), last - i, undecided);
+    return;
+  }
   for (std::size_t k = 0; k < together.size; ++k) put(k, std::min(i + k, last - 1));
   std::array<double, together.size> rest;
   together.earliest_approaches(clock_.now, clock_.horizon, rest.data());
@@ -139,7 +140,6 @@ void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
 
 template <class Motion>
 void Pairs<Motion>::estimate_dirty(std::size_t from) {
-  if (!balls_are_quick()) return estimates_.assign(dirty_.size(), undecided);
   estimates_.resize(dirty_.size());
   const std::size_t count = dirty_.size() - from;
   in_parts(count, threads_for(count, options_.threads),
@@ -190,7 +190,7 @@ void Pairs<Motion>::test(std::size_t most) {
   const std::size_t first = dirty_.size() - std::min(most, dirty_.size());
   if (!resting_.empty()) test_resting(first);
   estimate_dirty(first);
-  const bool sensors = bodies_.any_sensor();
+  const bool passes = options_.response == Response::none || bodies_.any_sensor();
   for (std::size_t i = first, dirty = dirty_.size(); i < dirty; ++i) {
     const Slot slot = dirty_[i];
     Pair& pair = pairs_[slot];
@@ -198,9 +198,11 @@ void Pairs<Motion>::test(std::size_t most) {
     if (!pair.alive) continue;
     ++counters_.pair_tests;
     const double estimate = estimates_[i];
-    const bool may_be_together = std::isnan(estimate) || (estimate == -never && pair.fresh);
-    const bool passes = sensors && mode(pair.a, pair.b) == ContactMode::transparent;
-    if (may_be_together || pair.overlapping || passes) [[unlikely]] {
+    // Balls that penetrate without counting as overlapping have bounced, and part, unless they have just come, or pass
+    // through each other.
+    const bool new_overlap = pair.fresh || (passes && mode(pair.a, pair.b) == ContactMode::transparent);
+    const bool may_be_together = std::isnan(estimate) || (estimate == -never && new_overlap);
+    if (may_be_together || pair.overlapping) [[unlikely]] {
       test(slot);
     } else {
       pair.estimated = std::abs(estimate) != never;

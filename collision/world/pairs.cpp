@@ -34,6 +34,15 @@ void Pairs<Motion>::pairs_to_come(std::size_t pairs) {
   links_.reserve(2 * first_pairs * pairs);
 }
 
+/// Pairs with an unbounded body are listed by Unbounded, not by the broad phase.
+template <class Motion>
+bool Pairs<Motion>::visit_pairs(BodySlot body, SlotVisitor visit) const {
+  for (const Link& link : links(body)) {
+    if (pairs_[link.slot].listed && !bodies_.unbounded(link.other)) visit(link.other);
+  }
+  return true;
+}
+
 template <class Motion>
 void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Stopwatch watch(profile_, Work::prune);

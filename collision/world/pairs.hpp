@@ -97,6 +97,7 @@ class Pairs final : public PairListener {
   bool filters_meet(std::uint64_t a, std::uint64_t b) const override {
     return CollisionFilter::of_masks(a).meets(CollisionFilter::of_masks(b));
   }
+  bool visit_pairs(BodySlot body, SlotVisitor visit) const override;
   void pair_began(BodySlot a, BodySlot b, double t) override;
   void pair_ended(BodySlot a, BodySlot b, double t) override;
   /// A new broad phase has been made, and these are all the pairs that it lists, in order.
@@ -228,7 +229,6 @@ class Pairs final : public PairListener {
 
   // pair_tests.cpp
   double horizon(const Pair& pair) const;
-  bool balls_are_quick() const;
   void test_resting(std::size_t first);
   void finish_test(Slot slot);
   void estimate_dirty(std::size_t from);

@@ -131,11 +131,14 @@ BoxGrid::Meetings random_meetings(Random& random, const BoxGrid::Meetings& among
   return meetings;
 }
 
-void compare_with_brute_force(std::uint64_t seed, int sizes) {
-  INFO("seed " << seed << ", sizes over 2^" << sizes);
+/// `guests_per_piece`: of the tuning; `far`: where the boxes are.
+void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests_per_piece, double far = 0) {
+  INFO("seed " << seed << ", sizes over 2^" << sizes << ", guests " << guests_per_piece << ", around " << far);
   constexpr BoxGrid::Id boxes = 60;
   Random random(seed);
-  BoxGrid grid;
+  CellTuning tuning;
+  tuning.guests_per_piece = guests_per_piece;
+  BoxGrid grid(tuning);
   grid.reserve(boxes);
   grid.change_kinds({0xF, 0xF, 0xF, 0xF}, [](BoxGrid::Id) { return BoxGrid::Kind{0}; });
   std::map<BoxGrid::Id, Known> known;
@@ -174,12 +177,16 @@ void compare_with_brute_force(std::uint64_t seed, int sizes) {
       known.erase(id);
       REQUIRE(changes.began.empty());
     } else {
-      Known one{random_box(random, std::ldexp(1.0, -random.integer(0, sizes)), 2, 0)};
+      const bool slanted = random.one_in(2);
+      const double size = slanted && random.one_in(2) ? 4 : std::ldexp(1.0, -random.integer(0, sizes));
+      Known one{random_box(random, size, 2, far)};
       one.kind = known.contains(id) ? known[id].kind : static_cast<BoxGrid::Kind>(random.below(BoxGrid::kinds));
-      if (random.one_in(2)) {
-        const Vector3d velocity(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+      if (slanted) {
+        Vector3d velocity(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+        if (random.one_in(4)) velocity[random.integer(0, 2)] *= 0x1p-4;
         const Array3d middle = 0.5 * (one.box.min + one.box.max);
-        one.slant = BoxSlant({middle - 0.01, middle + 0.01}, velocity);
+        const double half = random.one_in(8) ? 0.3 : 0.01;
+        one.slant = BoxSlant({middle - half, middle + half}, velocity);
       }
       if (!known.contains(id)) grid.set_kind(id, one.kind);
       grid.put(id, one.box, changes, 0, known.contains(id) && alone, one.slant ? &*one.slant : nullptr);
@@ -201,9 +208,13 @@ void compare_with_brute_force(std::uint64_t seed, int sizes) {
 }
 
 TEST_CASE("A box grid tells of the overlaps of slanted boxes, and of kinds that meet", "[box_slant][box_grid]") {
+  constexpr std::int64_t always_followed = 0, never_followed = 1 << 20;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    compare_with_brute_force(seed, 0);
-    compare_with_brute_force(seed, 6);
+    compare_with_brute_force(seed, 0, CellTuning{}.guests_per_piece);
+    for (const std::int64_t guests_per_piece : {always_followed, never_followed}) {
+      compare_with_brute_force(seed, 6, guests_per_piece);
+      compare_with_brute_force(seed, 3, guests_per_piece, -1e13);  // where cells are a few spacings of the doubles
+    }
   }
 }
 
