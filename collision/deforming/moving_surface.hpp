@@ -3,6 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/shapes/surface_tree.hpp"
+#include "kds/kept_memory.hpp"
 
 #include <Eigen/Core>
 
@@ -10,7 +11,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace kds::collision {
 
@@ -79,8 +79,9 @@ class MovingSurface {
   double radius_ = 0;
   double uncertainty_ = 0;
   bool solid_ = false;
-  std::array<std::vector<Eigen::Vector3d>, controls> control_;
-  std::vector<ControlBox<Degree>> boxes_;  ///< by node
+  // A world makes a surface for each test of a pair.
+  std::array<KeptVector<Eigen::Vector3d>, controls> control_;
+  KeptVector<ControlBox<Degree>> boxes_;  ///< by node
 };
 
 /// The control points of a path over [t0, t1], rounded, and a bound on what each of their coordinates is off.
