@@ -124,7 +124,7 @@ class WorldOf final : public AnyWorld {
     if constexpr (turns<M>) {
       for (std::size_t i = 0; i < own.size(); ++i) {
         const BodyId id = ids[i / each];
-        require_no_spin_of_half_space(world.shape(id).shape, own[i], "motion of body " + std::to_string(id));
+        require_no_spin(world.shape(id).shape, own[i], "motion of body " + std::to_string(id));
       }
     }
     for (std::size_t i = 0; i < ids.size(); ++i) {
