@@ -10,8 +10,14 @@ function valueOf(place, axis, t) {
 
 /** Least and greatest of numbers that a function gives for each of these things, at some times. */
 function extent(things, times, of) {
-  const all = things.flatMap((thing) => times.map((t) => of(thing, t)));
-  return [Math.min(...all), Math.max(...all)];
+  let [low, high] = [Infinity, -Infinity];
+  for (const thing of things) {
+    for (const t of times) {
+      const number = of(thing, t);
+      low = Math.min(low, number), high = Math.max(high, number);
+    }
+  }
+  return [low, high];
 }
 
 function layOutDrawings() {
@@ -40,8 +46,9 @@ function layOutDrawings() {
     set(svg, {viewBox: `0 0 ${width} ${height}`, height});
     const drawing = {versions, kind, axis, svg, caption, box, width, height};
     if (kind === 'ruler') {
-      // While somebody drags, the axis keeps its scale, as the picture does.
-      drawing.reach = rangeKept && kept[i] ? kept[i] : extent(places, times, (place, t) => valueOf(place, axis, t));
+      // While somebody drags, the axis keeps its scale, as the picture does. Every version has all ends.
+      drawing.reach = rangeKept && kept[i] ? kept[i]
+        : extent(versions[0].places, times, (place, t) => valueOf(place, axis, t));
     }
     scaleDrawing(drawing);
     drawings.push(drawing);
