@@ -1,19 +1,13 @@
 // Voronoi cells, from the triangles that the program recorded: lines between the middles of their circles.
 
-/** The part of a line from p to q within a box, or null. Paper: Liang and Barsky, 1984. */
-function clipped([px, py], [qx, qy], [x0, y0, x1, y1]) {
-  let from = 0, to = 1;
-  for (const [rate, room] of [[px - qx, px - x0], [qx - px, x1 - px], [py - qy, py - y0], [qy - py, y1 - py]]) {
-    if (rate === 0) {
-      if (room < 0) return null;
-    } else if (rate < 0) {
-      from = Math.max(from, room / rate);
-    } else {
-      to = Math.min(to, room / rate);
-    }
+/** The ends of the part of x + s d, s between from and to, within a box; or null. Paper: Liang and Barsky, 1984. */
+function clipped([x, y], [dx, dy], from, to, [x0, y0, x1, y1]) {
+  for (const [rate, room] of [[-dx, x - x0], [dx, x1 - x], [-dy, y - y0], [dy, y1 - y]]) {
+    if (rate === 0 && room < 0) return null;
+    if (rate < 0) from = Math.max(from, room / rate);
+    if (rate > 0) to = Math.min(to, room / rate);
   }
-  const at = (s) => [px + s * (qx - px), py + s * (qy - py)];
-  return from < to ? [at(from), at(to)] : null;
+  return from < to ? [[x + from * dx, y + from * dy], [x + to * dx, y + to * dy]] : null;
 }
 
 /**
@@ -34,10 +28,8 @@ function voronoiLines(triangles, at, box) {
     const [mx, my, nx, ny] = [(px + qx) / 2, (py + qy) / 2, py - qy, qx - px];
     // How far the middle of a circle is to the left of the edge, in lengths of it.
     const along = ({x, y}) => ((x - mx) * nx + (y - my) * ny) / (nx * nx + ny * ny);
-    const beyond = 4 * Math.hypot(box[2] - box[0], box[3] - box[1]) / Math.hypot(nx, ny);
-    const from = along({x, y});
-    const to = right ? along(right) : Math.min(0, from) - beyond;  // of the hull: outwards, out of the box
-    const line = clipped([mx + from * nx, my + from * ny], [mx + to * nx, my + to * ny], box);
+    const from = right ? along(right) : -Infinity;  // beyond the hull without end
+    const line = clipped([mx, my], [nx, ny], from, along({x, y}), box);
     if (line) lines.push([p, q, ...line]);
   }
   return lines;
