@@ -89,7 +89,7 @@ int main(int argc, char** argv) {
   std::array<Path, 4> square{corner, turned(corner, -1, 1), turned(corner, -1, -1), turned(corner, 1, -1)};
   std::cout << "a growing square: " << flips(square, page, "Four on a circle for ever") << " flips\n";
   square[0] = Path{{Polynomial<2>{{0.5, 0.375, 0}}, Polynomial<2>{{0.5, 0.375, 0}}}, 0};
-  std::cout << "one corner overtakes the circle of the others at t = 4: " << flips(square, page, "Four on a circle once")
-            << " flip\n";
+  std::cout << "one corner overtakes the circle of the others at t = 4: "
+            << flips(square, page, "Four on a circle once") << " flip\n";
   page.write(argc, argv, "08_degeneracies");
 }

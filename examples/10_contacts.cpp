@@ -43,7 +43,8 @@ class Teller final : public WorldListener<2> {
         const certificates::BallSeparation<2> apart{world.motion(a), world.motion(b), radius(a), radius(b)};
         const std::string fact = page_.name(a) + " and " + page_.name(b) + " are apart";
         const double fails = apart.first_approach(now, never);
-        state.certificates.push_back(course::held(fact, {a, b}, apart, fails, 0, "distance\u00B2 \u2212 (sum of radii)\u00B2"));
+        state.certificates.push_back(
+            course::held(fact, {a, b}, apart, fails, 0, "distance\u00B2 \u2212 (sum of radii)\u00B2"));
       }
       state.certificates.push_back(inside(world, a, now));
     }
@@ -55,7 +56,7 @@ class Teller final : public WorldListener<2> {
     for (int i = 0; i < 4; ++i) {
       const auto wall = static_cast<std::size_t>(i);  // of x, y, x, y
       const certificates::WallSeparation<2> apart{world.motion(id).axis(i % 2), page_.walls[wall], radius(id),
-                                                   i < 2 ? -1.0 : 1.0};
+                                                  i < 2 ? -1.0 : 1.0};
       // Just after a bounce the ball may be outside by a rounding, on its way in.
       const double from = sign_after(apart, now) < 0 ? recovery_time(apart, now) : now;
       const double fails = failure_time(apart, from);

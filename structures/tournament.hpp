@@ -50,8 +50,8 @@ class Tournament {
   /// The matches are the inner nodes of a complete binary tree: the final is node 1, and those who meet in node i come
   /// from 2 i and 2 i + 1. Leaves are elements. Nodes are below this number, half of them leaves.
   std::size_t end_node() const { return 2 * capacity_; }
-  /// Who has won a match, or the element of a leaf: `nobody`, the greatest id there is, if no element is below the node.
-  /// Precondition: 0 < node < end_node().
+  /// Who has won a match, or the element of a leaf: `nobody`, the greatest id there is, if no element is below the
+  /// node. Precondition: 0 < node < end_node().
   Id winner_of(std::size_t node) const {
     if (node < capacity_) return winner_[node];
     const auto id = static_cast<Id>(node - capacity_);

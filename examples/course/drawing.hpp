@@ -20,11 +20,11 @@ struct Drawing {
     plane   ///< places that move, with one scale for both coordinates
   };
   struct Place {
-    Id element = nobody;     ///< whose name, colour and value it has
-    std::vector<double> x;   ///< to the right: coefficients in the time in s
-    std::vector<double> y;   ///< upwards
-    int side = 0;            ///< of a box, its value is that of the lower (-1) or the upper (1) end
-    std::string name = {};   ///< of a place without an element, one or two letters
+    Id element = nobody;    ///< whose name, colour and value it has
+    std::vector<double> x;  ///< to the right: coefficients in the time in s
+    std::vector<double> y;  ///< upwards
+    int side = 0;           ///< of a box, its value is that of the lower (-1) or the upper (1) end
+    std::string name = {};  ///< of a place without an element, one or two letters
   };
   /// A certificate about two places; or a line between them, which never fails.
   struct Link {

@@ -116,7 +116,8 @@ class Page {
   /// The state at the beginning; to be called once, before any event.
   void starts(State state);
   /// An event, and the state from then on. Events are given in order of time; in the space-time diagram an event is
-  /// drawn at its first member. In the plane four members are on one circle then, which is drawn for a while. Throws std::logic_error for one that comes before another.
+  /// drawn at its first member. In the plane four members are on one circle then, which is drawn for a while. Throws
+  /// std::logic_error for one that comes before another.
   void event(double time, std::string text, std::vector<Id> members, State state);
   /// Shows a structure beside the picture, from a time on until the next drawing with the same title. Drawings of one
   /// title are given in order of time; of several at one time only the last one counts. Throws std::logic_error for one

@@ -64,10 +64,11 @@ Drawing drawing_of_tournament(const structures::Tournament<Degree>& tournament, 
     drawing.places.push_back(tree_place(winner, node, rows));
     if (node == 1) continue;
     const Id above = tournament.winner_of(node / 2);
-    drawing.join(place[node / 2], above == winner ? never
-                                                  : failure_time(certificates::Order<Degree>{tournament.motion(winner),
-                                                                                             tournament.motion(above)},
-                                                                 now));
+    drawing.join(
+        place[node / 2],
+        above == winner
+            ? never
+            : failure_time(certificates::Order<Degree>{tournament.motion(winner), tournament.motion(above)}, now));
   }
   return drawing;
 }
@@ -75,7 +76,8 @@ Drawing drawing_of_tournament(const structures::Tournament<Degree>& tournament, 
 /// Ends of intervals in their order on an axis. The ends of element i are 2 i, the lower, and 2 i + 1.
 template <class SortedList>
 Drawing drawing_of_ends(const SortedList& list, int axis, double now) {
-  Drawing drawing{.title = std::string("Ends on the axis of ") + "xyz"[axis], .kind = Drawing::Kind::ruler, .axis = axis};
+  Drawing drawing{
+      .title = std::string("Ends on the axis of ") + "xyz"[axis], .kind = Drawing::Kind::ruler, .axis = axis};
   for (const auto& end : list.entries()) {
     const auto i = drawing.places.size();
     drawing.places.push_back({end.id / 2, {static_cast<double>(i)}, {0}, end.id % 2 == 0 ? -1 : 1});
@@ -106,8 +108,8 @@ void draw_ends(Page& page, const std::vector<Box>& boxes, int axis, double end) 
 /// The triangulation of four points p, q, r and s. While they are corners of a quadrilateral, the link between its
 /// triangles is the certificate that the circle through three has not the fourth inside, and that circle is drawn.
 template <class Path>
-Drawing drawing_of_four(std::string title, const structures::DelaunayRule<Path>& delaunay, const MovingSet<Path>& points,
-                        double now) {
+Drawing drawing_of_four(std::string title, const structures::DelaunayRule<Path>& delaunay,
+                        const MovingSet<Path>& points, double now) {
   Drawing drawing{.title = std::move(title), .kind = Drawing::Kind::plane};
   for (Id id = 0; id < 4; ++id) {
     const auto x = about<double>(points[id].axis(0), 0).c, y = about<double>(points[id].axis(1), 0).c;

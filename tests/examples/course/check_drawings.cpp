@@ -36,13 +36,15 @@ class Check {
   Check(const json& drawing, double t, std::vector<std::string>& wrong) : drawing_(drawing), t_(t), wrong_(wrong) {
     for (const json& link : links()) {
       const std::size_t from = link["of"][0], to = link["of"][1];
-      const bool ends = distance(point(link["ends"]), at(from)) < 1e-6 && distance(point(link["ends"], 2), at(to)) < 1e-6;
+      const bool ends =
+          distance(point(link["ends"]), at(from)) < 1e-6 && distance(point(link["ends"], 2), at(to)) < 1e-6;
       expect(ends, "a link does not end at its places");
     }
   }
 
   void expect(bool right, const std::string& what) {
-    if (!right) wrong_.push_back("t = " + std::to_string(t_) + ": " + drawing_["title"].get<std::string>() + ": " + what);
+    if (!right)
+      wrong_.push_back("t = " + std::to_string(t_) + ": " + drawing_["title"].get<std::string>() + ": " + what);
   }
   std::size_t size() const { return drawing_["places"].size(); }
   const json& links() const { return drawing_["links"]; }
@@ -77,8 +79,8 @@ class Check {
   std::vector<std::string>& wrong_;
 };
 
-/// Nobody is above whom it stands below, and the highest is on top. `leaves`: elements stand at leaves, and at each place
-/// above that they win; otherwise each stands at one place.
+/// Nobody is above whom it stands below, and the highest is on top. `leaves`: elements stand at leaves, and at each
+/// place above that they win; otherwise each stands at one place.
 void check_tree(Check& check, const CoursePage& page, const json& drawing, double t, bool leaves) {
   std::vector<int> below(check.size()), above(check.size()), seen(page.size());
   const auto value = [&](std::size_t i) { return page.value(check.element(i), t); };
@@ -115,7 +117,8 @@ void check_tree(Check& check, const CoursePage& page, const json& drawing, doubl
   check.expect(values.size() == check.size() || values.empty(), "some places have values");
   for (std::size_t i = 0; i < values.size(); ++i) {
     const double x = value(i)(t);
-    check.expect(std::abs(values[i].get<double>() - x) <= 6e-3 * std::abs(x) + 1e-12, "a value is not that of its time");
+    check.expect(std::abs(values[i].get<double>() - x) <= 6e-3 * std::abs(x) + 1e-12,
+                 "a value is not that of its time");
   }
 }
 
@@ -131,7 +134,8 @@ void check_ends(Check& check, const CoursePage& page, const json& drawing, doubl
   for (std::size_t i = 0; i < check.size(); ++i) {
     ends.emplace(check.element(i), check.place(i)["side"].get<int>());
     const json& leader = drawing["leaders"][i];
-    check.expect(std::abs(leader[0].get<double>() - (v0 + kv * end(i)(t))) < 1e-6, "an end is not at its place on the axis");
+    check.expect(std::abs(leader[0].get<double>() - (v0 + kv * end(i)(t))) < 1e-6,
+                 "an end is not at its place on the axis");
     check.expect(std::abs(leader[2].get<double>() - check.at(i)[0]) < 1e-6, "a leader does not lead to its end");
     if (i == 0) continue;
     check.expect(check.at(i - 1)[0] < check.at(i)[0], "ends do not follow one another");
@@ -156,15 +160,18 @@ void check_four(Check& check, const json& drawing, double t) {
   const double radius = drawing["circle"]["at"][2];
   for (std::size_t k = 0; k < 4; ++k) {
     const double off = distance(check.at(drawing["circle"]["of"][k]), middle) - radius;
-    if (k < 3 || !once || t == 4) check.expect(std::abs(off) < 1e-6, "a point is not on the circle");
-    else check.expect(off > 0, "the fourth point is in the circle");
+    if (k < 3 || !once || t == 4)
+      check.expect(std::abs(off) < 1e-6, "a point is not on the circle");
+    else
+      check.expect(off > 0, "the fourth point is in the circle");
   }
   const double fails = once && t < 4 ? 4 : never;
   // The diagonal: two that are not neighbours in the square.
   check.check_next([&](std::size_t i, std::size_t k) { return (i + k) % 2 == 0 ? fails : never; });
 }
 
-/// Each line is where two points are nearest, and where two points are there is a line. Between the bounds of the points.
+/// Each line is where two points are nearest, and where two points are there is a line. Between the bounds of the
+/// points.
 void check_cells(const CoursePage& page, const json& frame, std::vector<std::string>& wrong) {
   const double t = frame["time"];
   std::vector<Point> points;
@@ -178,7 +185,9 @@ void check_cells(const CoursePage& page, const json& frame, std::vector<std::str
     return other - std::max(distance(x, points[a]), distance(x, points[b]));
   };
   const auto expect = [&](bool right, std::size_t a, std::size_t b, const std::string& what) {
-    if (!right) wrong.push_back("t = " + std::to_string(t) + ": cells of " + std::to_string(a) + " and " + std::to_string(b) + what);
+    if (!right)
+      wrong.push_back("t = " + std::to_string(t) + ": cells of " + std::to_string(a) + " and " + std::to_string(b) +
+                      what);
   };
   std::map<std::pair<std::size_t, std::size_t>, std::pair<Point, Point>> lines;
   for (const json& line : frame["cells"]) {
@@ -196,7 +205,8 @@ void check_cells(const CoursePage& page, const json& frame, std::vector<std::str
       const Point d{points[b][0] - points[a][0], points[b][1] - points[a][1]};
       for (double s = -3; s <= 3; s += 0.01) {
         const Point x{(points[a][0] + points[b][0]) / 2 - s * d[1], (points[a][1] + points[b][1]) / 2 + s * d[0]};
-        const bool inside = x[0] > 0.05 && x[0] < 0.95 && x[1] > 0.05 && x[1] < 0.95;  // arcs() stay in this square, nearly
+        const bool inside =
+            x[0] > 0.05 && x[0] < 0.95 && x[1] > 0.05 && x[1] < 0.95;  // arcs() stay in this square, nearly
         if (!inside || lead(x, a, b) < 1e-3) continue;
         const auto found = lines.find({a, b});
         if (found == lines.end()) return expect(false, a, b, ": no line");
@@ -216,7 +226,8 @@ void check_hull(const CoursePage& page, const json& frame, std::vector<std::stri
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Id a = hull[i], b = hull[(i + 1) % hull.size()];
     for (Id id = 0; id < page.size(); ++id) {
-      if (turn(at(a), at(b), at(id)) < -1e-12) wrong.push_back("t = " + std::to_string(t) + ": a point is outside the hull");
+      if (turn(at(a), at(b), at(id)) < -1e-12)
+        wrong.push_back("t = " + std::to_string(t) + ": a point is outside the hull");
     }
   }
 }
@@ -230,7 +241,8 @@ void check_happened(const CoursePage& page, const json& happened, double t, std:
   for (std::size_t k = 0; k < (now ? 4u : 3u); ++k) {
     const auto at = page.position(happened["members"][k], t);
     if (!(std::abs(distance({at[0], at[1]}, middle) - radius) < 1e-6 * (1 + radius))) {
-      wrong.push_back("t = " + std::to_string(t) + ": the circle of an event does not go through point " + std::to_string(k));
+      wrong.push_back("t = " + std::to_string(t) + ": the circle of an event does not go through point " +
+                      std::to_string(k));
     }
   }
 }
@@ -240,9 +252,11 @@ void check_happened(const CoursePage& page, const json& happened, double t, std:
 std::vector<std::string> wrong_in_drawings(const CoursePage& page, const std::string& program, const json& frame) {
   std::vector<std::string> wrong;
   const double t = frame["time"];
-  const std::map<std::string, std::size_t> drawings{{"05_tournament", 2}, {"08_degeneracies", 2}, {"09_sweep_and_prune", 2}};
+  const std::map<std::string, std::size_t> drawings{
+      {"05_tournament", 2}, {"08_degeneracies", 2}, {"09_sweep_and_prune", 2}};
   const auto found = drawings.find(program);
-  if (frame["drawings"].size() != (found == drawings.end() ? 0 : found->second)) wrong.push_back("drawings are missing");
+  if (frame["drawings"].size() != (found == drawings.end() ? 0 : found->second))
+    wrong.push_back("drawings are missing");
   for (const json& drawing : frame["drawings"]) {
     Check check(drawing, t, wrong);
     const std::string title = drawing["title"];
