@@ -32,7 +32,8 @@ function layOutDrawings() {
     const figure = document.createElement('figure'), caption = document.createElement('figcaption');
     $('drawings').append(figure);
     figure.append(caption);
-    const svg = make('svg', {class: 'drawing', 'data-title': title, role: 'img', 'aria-label': title, height: 0}, figure);
+    const named = {'data-title': title, role: 'img', 'aria-label': title};
+    const svg = make('svg', {class: 'drawing', height: 0, ...named}, figure);
     return {caption, svg};
   });
   titles.forEach((title, i) => {
@@ -58,11 +59,12 @@ function layOutDrawings() {
 /** Where a drawing has its places, and how large. */
 function scaleDrawing(drawing) {
   const {kind, box: [[x0, x1], [y0, y1]], width, height, svg} = drawing;
-  const [left, top, bottom] = kind === 'plane' ? [18, 18, 18] : [20, kind === 'ruler' ? 66 : 14, kind === 'ruler' ? 22 : 32];
+  const [left, top, bottom] = {plane: [18, 18, 18], ruler: [20, 66, 22], tree: [20, 14, 32]}[kind];
   let kx = Math.min((width - 2 * left) / (x1 - x0 || 1), 90), ky = (height - top - bottom) / (y1 - y0 || 1);
   if (kind === 'plane') kx = ky = Math.min(kx, ky, (width - 2 * left) / (x1 - x0 || 1));
   const [mx, my] = [width / 2 - kx * (x0 + x1) / 2, y1 > y0 ? top + ky * y1 : top];
-  Object.assign(drawing, {x: (x) => mx + kx * x, y: (y) => my - ky * y, radius: kind === 'plane' ? 9 : Math.min(10, kx * 0.42)});
+  const radius = Math.min(kind === 'plane' ? 9 : 10, kx * (kind === 'ruler' ? 0.34 : 0.42));
+  Object.assign(drawing, {x: (x) => mx + kx * x, y: (y) => my - ky * y, radius});
   drawing.roomy = kx >= 40;  // for a number under each place
   set(svg, {'data-x0': mx, 'data-kx': kx, 'data-y0': my, 'data-ky': -ky});
   drawing.still = make('g', {}, svg);
@@ -93,7 +95,8 @@ function drawOne({kind, axis, svg, caption, moving, x, y, along, radius, roomy},
   const next = links.find((link) => link[2] === fails) ?? null;
   const when = document.createElement('span');
   when.className = 'when';
-  when.textContent = next ? `, fails next at ${seconds(fails)} s: ${nameOf(places[next[0]])}, ${nameOf(places[next[1]])}` : '';
+  const names = next && next.slice(0, 2).map((i) => nameOf(places[i])).join(', ');
+  when.textContent = next ? `, fails next at ${seconds(fails)} s: ${names}` : '';
   caption.replaceChildren(title, when);
 
   if (circle) {
@@ -123,7 +126,8 @@ function drawOne({kind, axis, svg, caption, moving, x, y, along, radius, roomy},
       const [edge, tip] = [place.side * (radius + 2), place.side * (radius - 1)];
       make('path', {class: 'bracket', stroke: fill, d: `M${tip} ${-radius - 1}H${edge}V${radius + 1}H${tip}`}, group);
     } else if (v !== null && roomy) {
-      make('text', {class: 'value', x: px, y: py + radius + 11, 'data-value': v, text: Number(v.toPrecision(3))}, moving);
+      const below = {x: px, y: py + radius + 11};
+      make('text', {class: 'value', ...below, 'data-value': v, text: Number(v.toPrecision(3))}, moving);
     }
   });
 }

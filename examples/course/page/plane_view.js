@@ -46,7 +46,9 @@ function planeView(svg) {
       const box = {x: scale.x(wx0), y: scale.y(wy1), width: (wx1 - wx0) * k, height: (wy1 - wy0) * k};
       make('rect', {class: 'wall', ...box}, svg);
     }
-    for (const layer of ['outline', 'cells', 'edges', 'happened', 'witness', 'trails', 'intervals']) moving[layer] = make('g', {class: `${layer}-layer`}, svg);
+    for (const layer of ['outline', 'cells', 'edges', 'happened', 'witness', 'trails', 'intervals']) {
+      moving[layer] = make('g', {class: `${layer}-layer`}, svg);
+    }
     moving.elements = new Map(data.elements.map((e) => [e.id, drawElement(e, svg, k)]));
   }
 
