@@ -2,7 +2,7 @@
 // How to run: build/dev/examples/01_moving_points, then open the page that it names
 // What you see: a and b meet at t = 0.5 and t = 2
 #include "certificates/order.hpp"
-#include "examples/course/page.hpp"
+#include "examples/course/facts.hpp"
 #include "kds/roots/failure_time.hpp"
 
 #include <iostream>
@@ -38,10 +38,12 @@ int main(int argc, char** argv) {
   page.element(1, "b");
   page.moves(0, a, 0);
   page.moves(1, b, 0);
+  const auto rising = course::held("a is below b", {0, 1}, a_below_b, up, 0, "b(t) \u2212 a(t)");
+  const auto falling = course::held("a is above b", {1, 0}, Order<2>{b, a}, down, 0, "a(t) \u2212 b(t)");
   const std::string below = "a is below b", above = "a is above b";
-  page.starts({.text = below, .order = {0, 1}, .certificates = {{below, {0, 1}, up}}});
+  page.starts({.text = below, .order = {0, 1}, .certificates = {rising}});
   page.event(up, "a comes up to b and passes", {0, 1},
-             {.text = above, .order = {1, 0}, .certificates = {{above, {1, 0}, down}}});
+             {.text = above, .order = {1, 0}, .certificates = {falling}});
   page.event(down, "a falls past b", {0, 1}, {.text = below, .order = {0, 1}, .certificates = {{below, {0, 1}}}});
   page.write(argc, argv, "01_moving_points");
 }

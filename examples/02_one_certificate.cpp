@@ -1,7 +1,7 @@
 // You learn: a certificate of your own in three lines; its sign; the first double at which it has failed.
 // How to run: build/dev/examples/02_one_certificate, then open the page that it names
 // What you see: fails at t = 1.2679491924311226, the double just after the root
-#include "examples/course/page.hpp"
+#include "examples/course/facts.hpp"
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/certificate.hpp"
 #include "kds/roots/failure_time.hpp"
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   page.moves(2, f, 0);
   page.moves(3, Motion<0>{}, 0);
   const std::string fact = "ball \u2264 ceiling", holding = "f \u2265 0: the ball is below the ceiling";
-  page.starts({.text = holding, .certificates = {{fact, {0, 1}, fails}}});
+  page.starts({.text = holding, .certificates = {course::held(fact, {0, 1}, below, fails, 0, "f(t)")}});
   page.event(fails, "f fails: the ball is at the ceiling, and goes on", {2}, {.text = "f < 0: the ball is above it"});
   page.event(holds, "f holds again", {2}, {.text = holding, .certificates = {{fact, {0, 1}}}});
   page.write(argc, argv, "02_one_certificate");

@@ -2,6 +2,7 @@
 // How to run: build/dev/examples/05_tournament, then open the page that it names
 // What you see: tournament and heap agree: f, d, b, e, c, f
 #include "examples/course/facts.hpp"
+#include "examples/course/structure_drawings.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
 #include "structures/heap.hpp"
@@ -17,7 +18,8 @@ using HeapRule = structures::HeapRule<structures::ByValue<Motion<2>>>;
 int main(int argc, char** argv) {
   course::Page page(course::View::line, "05 Who is the highest",
                     "The highest of some rockets. A heap keeps nobody above its parent: a certificate for each but the "
-                    "top. Most swaps of a sorted list never happen here.", 0, 10);
+                    "top; a tournament has one for each match. Most swaps of a sorted list never happen here.",
+                    0, 10);
   page.legend.event = "parent and child change places";
   page.legend.marked = "the highest: the upper envelope";
   // Height, speed, half the acceleration; all lit at time 0. The page may give other motions.
@@ -55,9 +57,15 @@ int main(int argc, char** argv) {
   Simulator simulator(0, heap, tournament);
   tops = page.name(*heap.rule().top());
   page.starts(known(heap.rule(), 0));
+  const auto draw = [&](double now) {
+    page.draws(now, course::drawing_of_heap(heap.rule(), values, now));
+    page.draws(now, course::drawing_of_tournament(tournament, now));
+  };
+  draw(0);
 
   bool agree = true;
   while (simulator.step(10)) {
+    draw(simulator.now());
     // Where the top changes both have events at the same time: they are compared after all events of that time.
     if (simulator.next_time() > simulator.now()) agree = agree && heap.rule().top() == tournament.winner();
   }

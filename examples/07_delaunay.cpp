@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
   const double end = 10;
   course::Page page(course::View::plane, "07 Delaunay triangulation",
                     "No point is inside the circle through the corners of a triangle. Where four points come onto "
-                    "one circle, an edge is flipped. The broken circle belongs to the certificate that fails next.",
+                    "one circle, an edge is flipped. The broken circle belongs to the certificate that fails next. "
+                    "The lines between Voronoi cells join the middles of such circles.",
                     0, end);
   page.legend.edges = "an edge";
   page.play_time = 30;
@@ -35,7 +36,9 @@ int main(int argc, char** argv) {
     const Slot slots = 4 * delaunay.mesh().end_triangle();
     const course::Edges edges = course::edges_of(delaunay.mesh());
     return course::State{.text = std::to_string(edges.size()) + " edges, hull: " + page.names(delaunay.hull()),
+                         .outline = delaunay.hull(),
                          .edges = edges,
+                         .triangles = course::triangles_of(delaunay.mesh()),
                          .certificates = course::certificates_of(delaunay, slots, points, now, page)};
   };
   course::Edges before;

@@ -2,6 +2,7 @@
 // How to run: build/dev/examples/08_degeneracies, then open the page that it names
 // What you see: 3 events at t = 4, none at t = 2, none between the equal ones
 #include "examples/course/facts.hpp"
+#include "examples/course/structure_drawings.hpp"
 #include "examples/list_in_forty_lines.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
@@ -17,13 +18,15 @@ using namespace kds;
 using List = examples::ListRule<Motion<2>>;
 using Path = certificates::PlaneMotion<2>;
 
-/// Four points: how many flips of their triangulation there are until t = 3.
-std::uint64_t flips(const std::array<Path, 4>& paths) {
+/// Four points: how many flips of their triangulation there are, which the page shows under this title.
+std::uint64_t flips(const std::array<Path, 4>& paths, course::Page& page, const std::string& title) {
   MovingSet<Path> points;
   for (const Path& path : paths) points.add(path, 0);
   Kinetic<structures::DelaunayRule<Path>> delaunay(points, 0);
   Simulator simulator(0, delaunay);
-  simulator.advance_to(3);
+  do {
+    page.draws(simulator.now(), course::drawing_of_four(title, delaunay.rule(), points, simulator.now()));
+  } while (simulator.step(8));
   simulator.audit();
   return delaunay.measures().external;
 }
@@ -32,7 +35,9 @@ int main(int argc, char** argv) {
   course::Page page(course::View::line, "08 Degeneracies",
                     "The state at t is the one just after t, and its signs are exact. So b may touch a without an "
                     "event (a double root); c, d and e meet in one point and turn round in three swaps of one time; "
-                    "f and g are equal for ever and stand in the order of their numbers.", 0, 8);
+                    "f and g are equal for ever and stand in the order of their numbers. Below, four points of the "
+                    "plane: while they stay on one circle nothing happens; where they only pass, an edge is flipped.",
+                    0, 8);
   page.legend.event = "a swap";
   const std::vector<Motion<2>> usual{
       {{{1, 0, 0}}, 0},             // a is at rest
@@ -73,8 +78,8 @@ int main(int argc, char** argv) {
             << (of_equals == 0 ? "none" : "some") << " between the equal ones\n";
 
   // The corners of a growing square stay on one circle: either diagonal is right, so there is no flip. If one corner is
-  // faster from t = 1 on, it comes to lie outside the circle of the others; before, it is inside.
-  const Path corner{{Polynomial<2>{{1, 1, 0}}, Polynomial<2>{{1, 1, 0}}}, 0};
+  // faster, it comes to lie outside the circle of the others at t = 4; before, it is inside.
+  const Path corner{{Polynomial<2>{{1, 0.25, 0}}, Polynomial<2>{{1, 0.25, 0}}}, 0};
   const auto turned = [](const Path& path, double x, double y) {
     Path result = path;
     for (double& c : result.coordinate[0].c) c *= x;
@@ -82,8 +87,9 @@ int main(int argc, char** argv) {
     return result;
   };
   std::array<Path, 4> square{corner, turned(corner, -1, 1), turned(corner, -1, -1), turned(corner, 1, -1)};
-  std::cout << "a growing square: " << flips(square) << " flips\n";
-  square[0] = Path{{Polynomial<2>{{0.75, 1.25, 0}}, Polynomial<2>{{0.75, 1.25, 0}}}, 0};
-  std::cout << "one corner overtakes the circle of the others at t = 1: " << flips(square) << " flip\n";
+  std::cout << "a growing square: " << flips(square, page, "Four on a circle for ever") << " flips\n";
+  square[0] = Path{{Polynomial<2>{{0.5, 0.375, 0}}, Polynomial<2>{{0.5, 0.375, 0}}}, 0};
+  std::cout << "one corner overtakes the circle of the others at t = 4: "
+            << flips(square, page, "Four on a circle once") << " flip\n";
   page.write(argc, argv, "08_degeneracies");
 }

@@ -4,7 +4,8 @@
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "examples/course/arcs.hpp"
-#include "examples/course/page.hpp"
+#include "examples/course/facts.hpp"
+#include "examples/course/structure_drawings.hpp"
 
 #include <algorithm>
 #include <array>
@@ -51,10 +52,15 @@ class Teller final : public PairListener {
   std::vector<course::Held> certificates(double t) const {
     std::vector<course::Held> all;
     for (const auto& [a, b] : pairs_) {
-      double until = never;
+      course::Held held;
       const BoxOverlap<2> overlap(boxes_[a], boxes_[b]);
-      for (const auto& apart : overlap.separations()) until = std::min(until, recovery_time(apart, t));
-      all.push_back({page_.name(a) + " and " + page_.name(b) + " overlap", {a, b}, until});
+      for (const auto& apart : overlap.separations()) {
+        const double until = recovery_time(apart, t);
+        const certificates::Order<2> beyond{apart.upper, apart.lower};  // holds until then
+        if (until < held.fails) held = course::held("", {a, b}, beyond, until, 0, "upper end \u2212 lower end");
+      }
+      held.fact = page_.name(a) + " and " + page_.name(b) + " overlap";
+      all.push_back(std::move(held));
     }
     return all;
   }
@@ -97,6 +103,7 @@ int main(int argc, char** argv) {
   }
   for (Id id = 0; id < boxes.size(); ++id) entries.push_back({id, &boxes[id]});
 
+  for (const int axis : {0, 1}) course::draw_ends(page, boxes, axis, end);
   Teller teller(page, boxes);
   KineticSweepAndPrune<2> sweep(0, {.listed = ListedAxes::all});
   sweep.insert(entries, 0, teller);

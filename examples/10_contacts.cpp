@@ -4,7 +4,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/wall_separation.hpp"
 #include "collision/world.hpp"
-#include "examples/course/page.hpp"
+#include "examples/course/facts.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -42,23 +42,28 @@ class Teller final : public WorldListener<2> {
       for (Id b = a + 1; b < world.size(); ++b) {
         const certificates::BallSeparation<2> apart{world.motion(a), world.motion(b), radius(a), radius(b)};
         const std::string fact = page_.name(a) + " and " + page_.name(b) + " are apart";
-        state.certificates.push_back({fact, {a, b}, apart.first_approach(now, never)});
+        const double fails = apart.first_approach(now, never);
+        state.certificates.push_back(
+            course::held(fact, {a, b}, apart, fails, 0, "distance\u00B2 \u2212 (sum of radii)\u00B2"));
       }
-      state.certificates.push_back({page_.name(a) + " is inside the walls", {a}, leaves(world, a, now)});
+      state.certificates.push_back(inside(world, a, now));
     }
     return state;
   }
-  /// The first failure of the four certificates that keep a ball inside.
-  double leaves(const World<2>& world, Id id, double now) const {
-    double first = never;
+  /// The one that fails first of the four certificates that keep a ball inside.
+  course::Held inside(const World<2>& world, Id id, double now) const {
+    course::Held first;
     for (int i = 0; i < 4; ++i) {
       const auto wall = static_cast<std::size_t>(i);  // of x, y, x, y
-      const certificates::WallSeparation<2> inside{world.motion(id).axis(i % 2), page_.walls[wall], radius(id),
-                                                   i < 2 ? -1.0 : 1.0};
+      const certificates::WallSeparation<2> apart{world.motion(id).axis(i % 2), page_.walls[wall], radius(id),
+                                                  i < 2 ? -1.0 : 1.0};
       // Just after a bounce the ball may be outside by a rounding, on its way in.
-      const double from = sign_after(inside, now) < 0 ? recovery_time(inside, now) : now;
-      first = std::min(first, failure_time(inside, from));
+      const double from = sign_after(apart, now) < 0 ? recovery_time(apart, now) : now;
+      const double fails = failure_time(apart, from);
+      if (fails < first.fails) first = course::held("", {id}, apart, fails, 0, "distance of the wall \u2212 radius");
     }
+    first.fact = page_.name(id) + " is inside the walls";
+    first.members = {id};
     return first;
   }
   static double radius(Id id) { return 0.35 + 0.1 * id; }

@@ -47,6 +47,17 @@ class Tournament {
     return winner_[1];
   }
 
+  /// The matches are the inner nodes of a complete binary tree: the final is node 1, and those who meet in node i come
+  /// from 2 i and 2 i + 1. Leaves are elements. Nodes are below this number, half of them leaves.
+  std::size_t end_node() const { return 2 * capacity_; }
+  /// Who has won a match, or the element of a leaf: `nobody`, the greatest id there is, if no element is below the
+  /// node. Precondition: 0 < node < end_node().
+  Id winner_of(std::size_t node) const {
+    if (node < capacity_) return winner_[node];
+    const auto id = static_cast<Id>(node - capacity_);
+    return entrants_[id] ? id : nobody;
+  }
+
   /// Precondition: contains(id). The reference holds until the next insertion.
   const Motion<Degree>& motion(Id id) const { return *entrants_[id]; }
 
@@ -159,13 +170,6 @@ class Tournament {
   }
 
   static constexpr Id nobody = std::numeric_limits<Id>::max();
-
-  // A complete binary tree in heap order: matches 1 .. capacity - 1, entrant i at capacity + i.
-  Id winner_of(std::size_t node) const {
-    if (node < capacity_) return winner_[node];
-    const auto id = static_cast<Id>(node - capacity_);
-    return entrants_[id] ? id : nobody;
-  }
 
   Id loser_of(std::size_t node) const {
     const Id left = winner_of(2 * node);

@@ -14,6 +14,7 @@
 
 #include <iterator>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::course {
@@ -90,6 +91,16 @@ class Facts {
   std::vector<Id> members_;
 };
 
+/// A certificate that fails at a time, in your own words, with its polynomial in the time since `begin`.
+template <class Certificate>
+Held held(std::string fact, std::vector<Id> members, const Certificate& certificate, double fails, double begin,
+          std::string function = {}) {
+  Held held{std::move(fact), std::move(members), fails, std::move(function), {}};
+  const auto polynomial = certificate.template polynomial<double>(begin);
+  held.polynomial.assign(polynomial.c.begin(), polynomial.c.end());
+  return held;
+}
+
 /// The certificates of a rule in the slots below `end`, and when each fails if nothing happens before.
 template <class Rule>
 std::vector<Held> certificates_of(const Rule& rule, Slot end, const MovingSet<typename Rule::Element>& elements,
@@ -99,13 +110,12 @@ std::vector<Held> certificates_of(const Rule& rule, Slot end, const MovingSet<ty
     detail::with_certificate(rule.certificate(slot, elements), [&](const auto& certificate) {
       const auto members = rule.members(slot);
       const Facts<typename Rule::Element> facts(page, elements, {std::begin(members), std::end(members)});
-      Held held = facts.of(certificate);
-      held.fails = failure_time(certificate, now);
+      Held fact = facts.of(certificate);
+      fact.fails = failure_time(certificate, now);
       if constexpr (requires { certificate.template polynomial<double>(now); }) {
-        const auto polynomial = certificate.template polynomial<double>(page.begin());
-        held.polynomial.assign(polynomial.c.begin(), polynomial.c.end());
+        fact = held(fact.fact, fact.members, certificate, fact.fails, page.begin(), fact.function);
       }
-      all.push_back(std::move(held));
+      all.push_back(std::move(fact));
     });
   }
   return all;

@@ -43,6 +43,17 @@ inline Edges edges_of(const structures::TetrahedronMesh& mesh) {
   return edges;
 }
 
+/// The corners of the triangles, turning left.
+inline std::vector<std::array<Id, 3>> triangles_of(const structures::TriangleMesh& mesh) {
+  std::vector<std::array<Id, 3>> triangles;
+  for (structures::TriangleMesh::Edge h = 0; h < 3 * mesh.end_triangle(); h += 3) {
+    const std::array<Id, 3> corners{mesh.origin(h), mesh.origin(h + 1), mesh.origin(h + 2)};
+    const bool finite = std::find(corners.begin(), corners.end(), mesh.infinite) == corners.end();
+    if (mesh.in_use(h / 3) && finite) triangles.push_back(corners);
+  }
+  return triangles;
+}
+
 /// Which edges go and which come: in words, and the points at their ends. Nothing if none does.
 struct EdgeChange {
   std::string text;         ///< "a-b goes, c-d comes"

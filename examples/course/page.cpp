@@ -20,6 +20,26 @@ void put(ordered_json& object, const char* key, const List& list) {
   if (!list.empty()) object[key] = list;
 }
 
+ordered_json time_or_null(double time) { return time == never ? ordered_json() : ordered_json(time); }
+
+ordered_json json_of(double since, const Drawing& drawing) {
+  const char* const kinds[] = {"tree", "ruler", "plane"};
+  ordered_json entry{{"title", drawing.title}, {"since", since}, {"kind", kinds[static_cast<int>(drawing.kind)]}};
+  entry["axis"] = drawing.axis;
+  entry["places"] = ordered_json::array();
+  for (const Drawing::Place& place : drawing.places) {
+    ordered_json where{{"x", place.x}, {"y", place.y}};
+    if (place.element != nobody) where["of"] = place.element;
+    if (place.side != 0) where["side"] = place.side;
+    put(where, "name", place.name);
+    entry["places"].push_back(std::move(where));
+  }
+  entry["links"] = ordered_json::array();
+  for (const auto& [from, to, fails] : drawing.links) entry["links"].push_back({from, to, time_or_null(fails)});
+  put(entry, "circle", drawing.circle);
+  return entry;
+}
+
 }  // namespace
 
 Page::Page(View view, std::string title, std::string about, double begin, double end)
@@ -95,6 +115,18 @@ void Page::event(double time, std::string text, std::vector<Id> members, State s
   add_state(std::move(state));
 }
 
+void Page::draws(double since, Drawing drawing) {
+  const auto last = std::find_if(drawings_.rbegin(), drawings_.rend(),
+                                 [&](const auto& other) { return other.second.title == drawing.title; });
+  if (last == drawings_.rend() || last->first < since) {
+    drawings_.emplace_back(since, std::move(drawing));
+  } else if (last->first == since) {
+    last->second = std::move(drawing);
+  } else {
+    throw std::logic_error("Page: a drawing of " + drawing.title + " comes before the last");
+  }
+}
+
 /// Certificates that stay are not written again.
 void Page::add_state(State state) {
   const std::size_t number = states_.size();
@@ -154,17 +186,20 @@ std::string Page::json() const {
     put(entry, "order", state.order);
     put(entry, "outline", state.outline);
     put(entry, "edges", state.edges);
+    put(entry, "triangles", state.triangles);
     put(entry, "marked", state.marked);
     page["states"].push_back(std::move(entry));
   }
   page["certificates"] = ordered_json::array();
   for (const auto& [held, from, until] : spans_) {
     ordered_json entry{{"fact", held.fact}, {"members", held.members}, {"from", from}, {"until", until}};
-    entry["fails"] = held.fails == never ? ordered_json() : ordered_json(held.fails);
+    entry["fails"] = time_or_null(held.fails);
     if (!held.function.empty()) entry["function"] = held.function;
     put(entry, "polynomial", held.polynomial);
     page["certificates"].push_back(std::move(entry));
   }
+  page["drawings"] = ordered_json::array();
+  for (const auto& [since, drawing] : drawings_) page["drawings"].push_back(json_of(since, drawing));
   return page.dump();
 }
 

@@ -3,6 +3,7 @@
 
 #include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
+#include "examples/course/drawing.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/motion.hpp"
 
@@ -35,6 +36,7 @@ struct State {
   std::vector<Id> order;                ///< the least first
   std::vector<Id> outline;              ///< corners of a polygon
   std::vector<std::array<Id, 2>> edges; ///< lines between elements
+  std::vector<std::array<Id, 3>> triangles;  ///< that turn left and cover the outline: the page draws Voronoi cells
   std::vector<Id> marked;               ///< elements that stand out: the greatest, say
   std::vector<Held> certificates;       ///< that hold
 };
@@ -114,8 +116,13 @@ class Page {
   /// The state at the beginning; to be called once, before any event.
   void starts(State state);
   /// An event, and the state from then on. Events are given in order of time; in the space-time diagram an event is
-  /// drawn at its first member. Throws std::logic_error for one that comes before another.
+  /// drawn at its first member. In the plane four members are on one circle then, which is drawn for a while. Throws
+  /// std::logic_error for one that comes before another.
   void event(double time, std::string text, std::vector<Id> members, State state);
+  /// Shows a structure beside the picture, from a time on until the next drawing with the same title. Drawings of one
+  /// title are given in order of time; of several at one time only the last one counts. Throws std::logic_error for one
+  /// that comes before another.
+  void draws(double since, Drawing drawing);
 
   Legend legend;               ///< words for what is drawn
   std::vector<double> window;  ///< the visible part: least and greatest value; or x, y, x, y. By default all that moves
@@ -182,6 +189,7 @@ class Page {
   std::vector<Event> events_;
   std::vector<State> states_;
   std::vector<Span> spans_;
+  std::vector<std::pair<double, Drawing>> drawings_;  ///< since when each is shown
   std::vector<std::size_t> open_;  ///< spans that continue in the last state
 };
 

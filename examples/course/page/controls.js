@@ -18,6 +18,7 @@ function draw() {
   const number = stateNumber(now);
   if (number !== shown && answered && shown !== -1) answered = false;  // the time has been moved: another question
   view.draw(now, number, lit);
+  drawDrawings(now);
   drawHandles();
   $('figure').dataset.time = now;
   $('now').textContent = `t = ${seconds(now)} s`;
@@ -183,6 +184,8 @@ function tick(moment) {
 // The picture takes the height that the rest of the stage leaves of the window, if that is enough for it.
 let laidOut = '';
 function resize() {
+  layOutDrawings();
+  drawDrawings(now);
   const width = $('frame').clientWidth;
   const rest = $('stage').offsetHeight - $('figure').getBoundingClientRect().height;
   const footer = document.querySelector('footer');
@@ -216,6 +219,7 @@ function showRun(run) {
   lit = [];
   drawLegend();
   listEvents();
+  layOutDrawings();
   layOut(...laidOut.split(' ').map(Number));
 }
 
@@ -262,6 +266,10 @@ function fullScreen() {
   const done = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
   done.catch(() => { $('full').disabled = true; });  // a browser may refuse, within a frame for example
 }
+// What lies on top of a triangulation can be taken away.
+$('layers').hidden = !data.states.some((state) => state.triangles);
+$('cells').addEventListener('change', () => $('figure').classList.toggle('without-cells', !$('cells').checked));
+$('hull').addEventListener('change', () => $('figure').classList.toggle('without-hull', !$('hull').checked));
 $('larger').addEventListener('click', () => larger($('larger').getAttribute('aria-pressed') !== 'true'));
 $('full').addEventListener('click', fullScreen);
 document.addEventListener('fullscreenchange', () => {

@@ -28,6 +28,10 @@ function drawLegend() {
   }
   if (some('outline')) entry(data.names.outline, 'rect', {class: 'outline', x: 2, y: 2, width: 18, height: 14});
   if (some('edges')) entry(data.names.edges, 'path', {class: 'edge ' + (data.edges ?? ''), d: 'M0 9H22'});
+  if (some('triangles')) {
+    entry('between two Voronoi cells', 'path', {class: 'cell', d: 'M0 9H22'});
+    entry('four points on it, a moment ago', 'circle', {class: 'past-circle', cx: 11, cy: 9, r: 7.5});
+  }
   if (onLine && data.events.length > 0) entry(data.names.event, 'circle', {class: 'mark past', cx: 11, cy: 9, r: 4.5});
   if (data.certificates.length > 0) {
     if (onLine) entry('a certificate', 'path', {class: 'held', d: 'M11 1V17'});

@@ -76,6 +76,16 @@ function nextToFail(number) {
 const digits = Math.max(0, Math.min(9, 3 - Math.floor(Math.log10(duration / 4))));
 const seconds = (t) => t.toFixed(digits);
 
+/** The circle through three points that turn left; where roundings bring them on a line, a very large one. */
+function circumcircle([ax, ay], [bx, by], [cx, cy]) {
+  const [ux, uy, vx, vy] = [bx - ax, by - ay, cx - ax, cy - ay];
+  const [u, v] = [ux * ux + uy * uy, vx * vx + vy * vy];
+  const turn = ux * vy - uy * vx, least = 1e-12 * Math.max(u, v);
+  const d = 2 * (Math.abs(turn) < least ? least : turn);
+  const [x, y] = [(u * vy - v * uy) / d, (v * ux - u * vx) / d];
+  return {x: ax + x, y: ay + y, r: Math.hypot(x, y)};
+}
+
 function make(tag, attributes, parent) {
   const node = document.createElementNS('http://www.w3.org/2000/svg', tag);
   set(node, attributes);

@@ -46,7 +46,9 @@ function planeView(svg) {
       const box = {x: scale.x(wx0), y: scale.y(wy1), width: (wx1 - wx0) * k, height: (wy1 - wy0) * k};
       make('rect', {class: 'wall', ...box}, svg);
     }
-    for (const layer of ['outline', 'edges', 'witness', 'trails', 'intervals']) moving[layer] = make('g', {}, svg);
+    for (const layer of ['outline', 'cells', 'edges', 'happened', 'witness', 'trails', 'intervals']) {
+      moving[layer] = make('g', {class: `${layer}-layer`}, svg);
+    }
     moving.elements = new Map(data.elements.map((e) => [e.id, drawElement(e, svg, k)]));
   }
 
@@ -75,24 +77,43 @@ function planeView(svg) {
       make('line', {class: 'edge ' + (data.edges ?? ''), 'data-edge': `${a}-${b}`, x1: xa, y1: ya, x2: xb, y2: yb},
            moving.edges);
     }
+    moving.cells.replaceChildren();
+    if (state.triangles) drawCells(state.triangles, t);
+    drawHappened(t, number);
     moving.witness.replaceChildren();
     if (next) drawWitness(next.members.map((id) => point(id, t)));
     drawTrails(t);
     if (data.intervals) drawIntervals(t);
   }
 
+  function drawCells(triangles, t) {
+    const box = [(scale.xs[0] - scale.x(0)) / scale.k, (scale.y(0) - scale.ys[1]) / scale.k,
+                 (scale.xs[1] - scale.x(0)) / scale.k, (scale.y(0) - scale.ys[0]) / scale.k];
+    const at = (id) => { const {x, y} = position(id, t); return [x, y]; };
+    for (const [a, b, p, q] of voronoiLines(triangles, at, box)) {
+      make('line', {class: 'cell', 'data-cell': `${a}-${b}`, x1: scale.x(p[0]), y1: scale.y(p[1]),
+                    x2: scale.x(q[0]), y2: scale.y(q[1])}, moving.cells);
+    }
+  }
+
+  /** Four points that the latest event was about are on one circle then: the circle through three, for a while. */
+  function drawHappened(t, number) {
+    moving.happened.replaceChildren();
+    const event = data.events[number - 1];
+    if (event?.members.length !== 4 || t - event.time > 0.02 * duration) return;
+    const {x: cx, y: cy, r} = circumcircle(...event.members.slice(0, 3).map((id) => point(id, t)));
+    if (r < 2 * Math.max(size.width, size.height)) {
+      make('circle', {class: 'past-circle', 'data-happened': event.members.join(' '), cx, cy, r}, moving.happened);
+    }
+  }
+
   /** Two points and the line between them, three and their triangle, four: the circle through the first three. */
   function drawWitness(points) {
     const radius = 2 * Math.max(size.width, size.height);
     if (points.length === 4) {
-      const [[ax, ay], [bx, by], [cx, cy]] = points;
-      const d = 2 * (ax * (by - cy) + bx * (cy - ay) + cx * (ay - by));
-      const [a, b, c] = [ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy];
-      const ux = (a * (by - cy) + b * (cy - ay) + c * (ay - by)) / d;
-      const uy = (a * (cx - bx) + b * (ax - cx) + c * (bx - ax)) / d;
-      const r = Math.hypot(ax - ux, ay - uy);
+      const {x: cx, y: cy, r} = circumcircle(...points.slice(0, 3));
       if (!(r < radius)) return;
-      make('circle', {class: 'witness', cx: ux, cy: uy, r}, moving.witness);
+      make('circle', {class: 'witness', cx, cy, r}, moving.witness);
     } else if (points.length > 1) {
       make('polygon', {class: 'witness', points: points.map((p) => p.join()).join(' ')}, moving.witness);
     }

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
       const std::string what = run["what"];
       const json right = native(argv[2], argv[3] + std::string(".native"), run["motions"]);
       const json& shown = run["data"];
-      for (const char* part : {"elements", "events", "states", "certificates", "begin", "end"}) {
+      for (const char* part : {"elements", "events", "states", "certificates", "drawings", "begin", "end"}) {
         if (right[part] != shown[part]) wrong(what, ": ", part, " are not those of the program here");
       }
       if (run["events"] != right["events"].size()) wrong(what, ": not all events are listed");

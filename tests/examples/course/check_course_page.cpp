@@ -1,5 +1,6 @@
 // Compares what a browser showed of a page of the course with what must be known there.
 // Usage: check_course_page NAME PAGE.html REPORTS.html
+#include "tests/examples/course/check_drawings.hpp"
 #include "tests/examples/course/expected_states.hpp"
 
 #include <algorithm>
@@ -82,6 +83,14 @@ void check_frame(const CoursePage& page, const std::string& name, const json& fr
     const double said = std::strtod(next.c_str() + next.rfind(", at ") + 5, nullptr);
     if (!(std::abs(said - fails) <= 1e-3 * (1 + std::abs(fails)))) wrong("t = ", t, ": next: ", next);
   }
+  for (const std::string& mistake : wrong_in_drawings(page, name, frame)) wrong(mistake);
+  // The function that proves the next certificate, and its root.
+  const std::string formula = frame["formula"];
+  if (fails != never && formula.find(" = ") == std::string::npos) wrong("t = ", t, ": there is no formula: ", formula);
+  if (fails != never) {
+    const double root = std::strtod(formula.c_str() + formula.rfind("t = ") + 4, nullptr);
+    if (!(std::abs(root - fails) <= 1e-3 * (1 + std::abs(fails)))) wrong("t = ", t, ": formula: ", formula);
+  }
   // The event that is lit in the list is the last one up to now.
   long latest = -1;
   for (const json& event : page.data()["events"]) latest += event["time"] <= t;
@@ -146,6 +155,13 @@ int main(int argc, char** argv) {
       if (turned["names"] != page.size()) wrong("not all names follow when the view is turned");
       if (!(turned["bytes"] > 0.01)) wrong("the picture stays when the view is turned: ", turned["bytes"]);
     }
+    if (report.contains("layers") != (argv[1] == std::string("07_delaunay"))) wrong("whether layers can be hidden");
+    for (const json& seen : report.value("layers", json::array())) {
+      if (seen != json({true, false, true})) wrong("a layer is not hidden and shown again: ", seen);
+    }
+    const auto happened = std::count_if(report["frames"].begin(), report["frames"].end(),
+                                        [](const json& frame) { return frame.contains("happened"); });
+    if (page.data()["states"][0].contains("triangles") && happened < 20) wrong("circles of events: ", happened);
     if (report["frames"].size() < 5) wrong("the slider has not been moved");
     for (const json& frame : report["frames"]) {
       const double asked = frame["wanted"];

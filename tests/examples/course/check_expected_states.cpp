@@ -10,6 +10,7 @@
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
 #include "structures/tournament.hpp"
+#include "tests/examples/course/boxes_of_page.hpp"
 #include "tests/examples/course/expected_states.hpp"
 
 #include <algorithm>
@@ -128,15 +129,7 @@ Expected delaunay_in_space(const CoursePage& page, double t) {
 
 /// All pairs of boxes, by exact signs.
 Expected overlaps(const CoursePage& page, double t) {
-  std::vector<collision::KineticBox<2>> boxes;
-  for (Id id = 0; id < page.size(); ++id) {
-    certificates::PointMotion<2> motion;
-    const Path path = page.path(id, t);
-    for (std::size_t i = 0; i <= 2; ++i) motion.coefficients[i] = {path.coordinate[0].c[i], path.coordinate[1].c[i], 0};
-    motion.start = path.start;
-    const std::array<double, 2> half = page.element(id)["half"];
-    boxes.push_back(collision::box_around<2>(motion, {-half[0], -half[1], -1}, {half[0], half[1], 1}));
-  }
+  const auto boxes = boxes_of(page, t);
   Expected expected;
   expected.edges.emplace();
   for (Id a = 0; a < boxes.size(); ++a) {

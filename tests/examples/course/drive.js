@@ -32,11 +32,42 @@ window.addEventListener('load', () => {
       const ends = [...model(at('x1'), at('y1')), ...model(at('x2'), at('y2'))];
       return [...line.dataset.edge.split('-').map(Number), ...ends];
     });
+    frame.cells = [...figure.querySelectorAll('[data-cell]')].map((line) => {
+      const at = (name) => Number(line.getAttribute(name));
+      return [...line.dataset.cell.split('-').map(Number), ...model(at('x1'), at('y1')), ...model(at('x2'), at('y2'))];
+    });
+    const happened = figure.querySelector('[data-happened]');
+    if (happened) {
+      const [cx, cy, r] = ['cx', 'cy', 'r'].map((name) => Number(happened.getAttribute(name)));
+      frame.happened = {members: numbers(happened.dataset.happened), circle: [...model(cx, cy), r / figure.dataset.kx]};
+    }
+    frame.formula = document.getElementById('formula').textContent;
+    frame.drawings = [...document.querySelectorAll('#drawings .drawing')].map(lookAtDrawing);
     const outline = figure.querySelector('[data-outline]');
     frame.outline = outline ? numbers(outline.dataset.outline) : [];
     const corners = outline ? numbers(outline.getAttribute('points')) : [];
     frame.corners = frame.outline.map((_, i) => model(corners[2 * i], corners[2 * i + 1]));
     return frame;
+  }
+
+  /** A structure beside the picture, in its own pixels. */
+  function lookAtDrawing(svg) {
+    const all = (what) => [...svg.querySelectorAll(what)];
+    const {title, ...scale} = svg.dataset;
+    const circle = svg.querySelector('[data-circle]');
+    return {
+      title, scale: Object.fromEntries(Object.entries(scale).map(([name, text]) => [name, Number(text)])),
+      places: all('[data-node]').map((group) => ({
+        of: Number(group.dataset.of ?? -1), side: Number(group.dataset.side ?? 0), label: group.textContent,
+        at: numbers(group.getAttribute('transform'))})),
+      links: all('[data-link]').map((line) => ({
+        of: line.dataset.link.split('-').map(Number), next: line.classList.contains('next'),
+        ends: ['x1', 'y1', 'x2', 'y2'].map((name) => Number(line.getAttribute(name)))})),
+      leaders: all('[data-leader]').map((line) => numbers(line.getAttribute('d'))),
+      values: all('[data-value]').map((text) => Number(text.textContent)),
+      ...(circle && {circle: {of: numbers(circle.dataset.circle),
+                              at: ['cx', 'cy', 'r'].map((name) => Number(circle.getAttribute(name)))}}),
+    };
   }
 
   /** A slider rounds to some fifteen digits. */
@@ -77,6 +108,27 @@ window.addEventListener('load', () => {
     const apart = p.x + p.width <= q.x || q.x + q.width <= p.x || p.y + p.height <= q.y || q.y + q.height <= p.y;
     if (!apart) report.overlaps.push([a, b]);
   }));
+  for (const svg of document.querySelectorAll('#drawings .drawing')) {
+    const texts = [...svg.querySelectorAll('text')].map((text) => [text.textContent, text.getBoundingClientRect()]);
+    texts.forEach(([a, p], i) => texts.slice(i + 1).forEach(([b, q]) => {
+      const apart = p.right <= q.left || q.right <= p.left || p.bottom <= q.top || q.bottom <= p.top;
+      if (!apart) report.overlaps.push([a, b]);
+    }));
+  }
+  if (!document.getElementById('layers').hidden) {
+    report.layers = ['cells', 'hull'].map((name) => {
+      const shown = () => {
+        const layer = figure.querySelector(name === 'cells' ? '[data-cell]' : '[data-outline]');
+        return layer.getClientRects().length > 0;
+      };
+      const box = document.getElementById(name), seen = [shown()];
+      for (let k = 0; k < 2; ++k) {
+        box.click();
+        seen.push(shown());
+      }
+      return seen;
+    });
+  }
   if (window.course.data.view === 'line') {
     const [thumb, picture] = [slider.getBoundingClientRect(), figure.getBoundingClientRect()];
     const x = (t) => picture.left + Number(figure.dataset.x0) + t * Number(figure.dataset.kx);

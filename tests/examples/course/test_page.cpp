@@ -117,6 +117,22 @@ TEST_CASE("a program takes the motions that its page gives it", "[course]") {
   CHECK_THROWS_AS(given("[{"), std::exception);
 }
 
+TEST_CASE("of drawings with one title at one time the last counts", "[course]") {
+  Page page(View::line, "t", "a", 0, 1);
+  page.draws(0, {.title = "one"});
+  page.draws(0.5, {.title = "two"});
+  course::Drawing drawing{.title = "one", .places = {{.x = {1}, .y = {2}, .name = "p"}, {.element = 3}}};
+  drawing.join(0);
+  page.draws(0, drawing);
+  CHECK_THROWS_WITH(page.draws(0.4, {.title = "two"}), "Page: a drawing of two comes before the last");
+  const json drawings = json::parse(page.json())["drawings"];
+  REQUIRE(drawings.size() == 2);
+  CHECK(drawings[0]["places"].size() == 2);
+  CHECK((drawings[0]["places"][0]["name"] == "p" && drawings[0]["places"][1]["of"] == 3));
+  CHECK(drawings[0]["links"][0] == json({0, 1, nullptr}));
+  CHECK((drawings[1]["title"] == "two" && drawings[1]["since"] == 0.5));
+}
+
 TEST_CASE("a page refuses what it could not show", "[course]") {
   CHECK_THROWS_AS(Page(View::line, "", "", 1, 1), std::invalid_argument);
   Page page(View::line, "", "", 0, 1);
