@@ -125,7 +125,7 @@ TEST_CASE("a tensor of equal moments is the moment, and others are of bodies tha
 
 TEST_CASE("turning worlds find the same contacts whichever broad phase they have", "[turning]") {
   const auto fill = [](Turning& world) {
-    tests::Random random(77);
+    kds::tests::Random random(77);
     for (int i = 0; i < 30; ++i) {
       const Vector3d place(i % 3 * 2.0 - 2, i / 3 % 3 * 2.0 - 2, i / 9 * 2.0 - 3);
       const auto between = [&] { return random.between(-1, 1); };
@@ -146,7 +146,7 @@ TEST_CASE("turning worlds with meshes find the same contacts whichever broad pha
   const std::vector<std::shared_ptr<const Mesh>> meshes{samples::torus(6, 4), samples::cuboid(Vector3d(0.5, 0.4, 0.6)),
                                                         samples::ball_mesh(1)};
   const auto fill = [&](Turning& world) {
-    tests::Random random(78);
+    kds::tests::Random random(78);
     for (std::size_t i = 0; i < 18; ++i) {
       const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
                            static_cast<double>(i / 9) * 2.4 - 1.2);
@@ -171,7 +171,7 @@ TEST_CASE("turning worlds with hulls find the same contacts whichever broad phas
   const Shape wedge = convex_hull({{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0.4}, {0, -0.6, 0.4}, {0, 0, -0.2}});
   const auto ring = samples::torus(6, 4);
   const auto fill = [&](Turning& world) {
-    tests::Random random(79);
+    kds::tests::Random random(79);
     for (std::size_t i = 0; i < 24; ++i) {
       const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
                            static_cast<double>(i / 9) * 2.4 - 2.4);
@@ -195,7 +195,7 @@ TEST_CASE("turning worlds with capsules find the same contacts whichever broad p
   const Shape wedge = convex_hull({{0.6, 0, 0}, {-0.6, 0, 0}, {0, 0.6, 0.4}, {0, -0.6, 0.4}, {0, 0, -0.2}});
   const auto ring = samples::torus(6, 4);
   const auto fill = [&](Turning& world) {
-    tests::Random random(80);
+    kds::tests::Random random(80);
     for (std::size_t i = 0; i < 27; ++i) {
       const Vector3d place(static_cast<double>(i % 3) * 2.4 - 2.4, static_cast<double>(i / 3 % 3) * 2.4 - 2.4,
                            static_cast<double>(i / 9) * 2.4 - 2.4);
@@ -248,7 +248,7 @@ TEST_CASE("a capsule that tumbles bounces, with its energy and momenta, and prec
 }
 
 TEST_CASE("the volume of a capsule holds it however far it turns, and is no larger than its ball", "[turning]") {
-  tests::Random random(81);
+  kds::tests::Random random(81);
   const auto between = [&] { return random.between(-1, 1); };
   for (int round = 0; round < 200; ++round) {
     const Capsule capsule{random.between(0.01, 1), random.between(0.01, 2)};
