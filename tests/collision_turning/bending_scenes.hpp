@@ -39,17 +39,6 @@ inline BruteSurface solid_at(const Solid& solid, const RigidMotion<2>& motion, d
   return solid.at(place_at(motion, t), rotation_at(motion, t));
 }
 
-/// A sheet that bends at random, until 2.
-inline BendingMesh random_sheet(samples::Random& random) {
-  std::vector<MeshScript::Keyframe> keyframes;
-  const samples::Sheet sheet(3);
-  for (int i = 0; i < 4; ++i) {
-    auto positions = sheet.positions;
-    for (Vector3d& p : positions) p += random.vector(0.3);
-    keyframes.push_back({0.75 * i - 0.25, positions});
-  }
-  return bending(std::move(keyframes), sheet.triangles);
-}
 inline BruteSurface sheet_at(const BendingMesh& sheet, const RigidMotion<2>& motion, double t) {
   BruteSurface surface;
   const LongMatrix turn = rotation_at(motion, t);

@@ -1,4 +1,4 @@
-// Bowls that bend, and what falls into them: as shapes, and as surfaces at one time in long doubles.
+// Sheets and bowls that bend, and what falls into them: as shapes, and as surfaces at one time in long doubles.
 #pragma once
 
 #include "collision/shapes/bending_mesh.hpp"
@@ -25,6 +25,18 @@ using LongMatrix = Eigen::Matrix<Long, 3, 3>;
 
 inline BendingMesh bending(std::vector<MeshScript::Keyframe> keyframes, std::vector<Mesh::Triangle> triangles) {
   return {std::make_shared<const MeshScript>(std::move(keyframes), std::move(triangles))};
+}
+
+/// A sheet that bends at random until 2: each coordinate of a vertex by up to `most`.
+inline BendingMesh random_sheet(samples::Random& random, double most = 0.3) {
+  std::vector<MeshScript::Keyframe> keyframes;
+  const samples::Sheet sheet(3);
+  for (int i = 0; i < 4; ++i) {
+    auto positions = sheet.positions;
+    for (Vector3d& p : positions) p += random.vector(most);
+    keyframes.push_back({0.75 * i - 0.25, positions});
+  }
+  return bending(std::move(keyframes), sheet.triangles);
 }
 
 /// A bowl that heaves and tilts, 2 wide: z is a function of x and y, which are those of the flat sheet.

@@ -4,7 +4,7 @@
 #include "collision/shapes/shape.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
-#include "tests/collision/deforming/brute_sheets.hpp"
+#include "tests/collision/deforming/bowls.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision/sample_sheets.hpp"
@@ -28,17 +28,6 @@ using namespace kds::collision::tests;
 template <int Degree>
 using Path = certificates::PointMotion<Degree>;
 
-BendingMesh random_sheet(samples::Random& random) {
-  std::vector<MeshScript::Keyframe> keyframes;
-  const samples::Sheet sheet(3);
-  for (int i = 0; i < 4; ++i) {
-    auto positions = sheet.positions;
-    for (Vector3d& p : positions) p += random.vector(0.5);
-    keyframes.push_back({0.75 * i - 0.25, positions});
-  }
-  return {std::make_shared<const MeshScript>(std::move(keyframes), sheet.triangles)};
-}
-
 template <int Degree>
 struct Scene {
   BendingMesh sheet;
@@ -47,7 +36,7 @@ struct Scene {
   Path<Degree> path, path_of_plane;
 
   explicit Scene(samples::Random& random)
-      : sheet(random_sheet(random)),
+      : sheet(random_sheet(random, 0.5)),
         plane{Vector3d(0, 0, 1), random.vector(0.5)[0]},
         turn(random.orientation()),
         of_plane(random.orientation()),

@@ -3,7 +3,7 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
-#include "tests/collision/deforming/brute_sheets.hpp"
+#include "tests/collision/deforming/bowls.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision/sample_sheets.hpp"
@@ -36,18 +36,6 @@ BendingMesh bulging_sheet() {
   bulged[12][2] = 2;
   return {std::make_shared<const MeshScript>(
       std::vector<MeshScript::Keyframe>{{1, sheet.positions}, {3, bulged}, {5, sheet.positions}}, sheet.triangles)};
-}
-
-/// A sheet that bends at random.
-BendingMesh random_sheet(samples::Random& random) {
-  std::vector<MeshScript::Keyframe> keyframes;
-  const samples::Sheet sheet(3);
-  for (int i = 0; i < 4; ++i) {
-    auto positions = sheet.positions;
-    for (Vector3d& p : positions) p += random.vector(0.3);
-    keyframes.push_back({0.75 * i - 0.25, positions});
-  }
-  return {std::make_shared<const MeshScript>(std::move(keyframes), sheet.triangles)};
 }
 
 template <int Degree>
