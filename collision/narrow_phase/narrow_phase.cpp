@@ -16,6 +16,7 @@
 #include "collision/narrow_phase/turning/turning_mesh_contact.hpp"
 
 #include <algorithm>
+#include <optional>
 
 namespace kds::collision {
 namespace {
@@ -122,18 +123,35 @@ double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b,
   });
 }
 
+namespace {
+
+/// As certified_first_contact, by exact signs from the first instant on.
+template <class Motion>
+ContactEstimate sought_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
+                                     double horizon, ContactMode mode, FoundTouch* found) {
+  const double end = end_of_search(a, b, t0, horizon);
+  const double time = first_contact(a, b, t0, end, mode, found);
+  return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};
+}
+
+/// The estimate that a proof makes which has got as far as `apart`; none where it tells nothing.
+std::optional<ContactEstimate> estimate_of(double apart, double t0, double horizon) {
+  if (apart > horizon) return ContactEstimate{never, true};
+  if (apart > t0) return ContactEstimate{apart, false};
+  return std::nullopt;
+}
+
+}  // namespace
+
 template <class Motion>
 ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, FoundTouch* found) {
   if constexpr (turns<Motion>) {
     PairMemory memory;
     const double apart = pair_tests<Motion>(a.shape, b.shape).apart_until(a, b, t0, horizon, memory);
-    if (apart > horizon) return {never, true};
-    if (apart > t0) return {apart, false};
+    if (const auto estimate = estimate_of(apart, t0, horizon)) return *estimate;
   }
-  const double end = end_of_search(a, b, t0, horizon);
-  const double time = first_contact(a, b, t0, end, mode, found);
-  return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};
+  return sought_first_contact(a, b, t0, horizon, mode, found);
 }
 
 template <class Motion>
@@ -149,10 +167,12 @@ ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const Movi
                                         double horizon, ContactMode mode, PairMemory& memory, FoundTouch* found) {
   return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) -> ContactEstimate {
     const PairTests<M>& tests = pair_tests<M>(x.shape, y.shape);
-    const double time = tests.apart_until(x, y, t0, horizon, memory);
-    if (time == never || time > horizon) return {never, true};
-    if (time > t0) return {time, false};
-    return certified_first_contact(x, y, t0, horizon, mode, found);
+    if (const auto estimate = estimate_of(tests.apart_until(x, y, t0, horizon, memory), t0, horizon)) return *estimate;
+    if (tests.apart_again_until) {
+      const double apart = tests.apart_again_until(x, y, t0, horizon, mode);
+      if (const auto estimate = estimate_of(apart, t0, horizon)) return *estimate;
+    }
+    return sought_first_contact(x, y, t0, horizon, mode, found);
   });
 }
 

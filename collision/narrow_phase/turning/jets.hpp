@@ -93,4 +93,12 @@ inline double positive_for(const Jet& f, double third, double longest) {
   return low * (1 - 0x1p-30);
 }
 
+/// The same of a function that is known not to be negative at first, whatever doubles make of its value: for all x in
+/// (0, s]. Its rate and bend are to be rounded down.
+///
+/// Method: it is at least x (rate + bend x / 2 - third x^2 / 6).
+inline double positive_after(const Jet& f, double third, double longest) {
+  return positive_for({f.rate, f.bend / 2, -third / 3}, 0, longest);
+}
+
 }  // namespace kds::collision

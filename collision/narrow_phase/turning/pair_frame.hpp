@@ -105,9 +105,11 @@ class PairFrame {
 
 /// Bounds on f = n . p for all the time of a stretch: n turns at a rate, and p is the way and vectors that turn.
 struct TurningBounds {
-  double third;     ///< of |f'''|
-  double rounding;  ///< of what is lost in computing f, f' and f'', and following them
-  double lengths;   ///< of what p is the sum of, at any time of the stretch
+  double third;              ///< of |f'''|
+  double rounding;           ///< of what is lost in computing f, f' and f'', and following them
+  double lengths;            ///< of what p is the sum of, at any time of the stretch
+  double rate_rounding = 0;  ///< of what is lost in computing f' alone
+  double bend_rounding = 0;  ///< and f''
 
   TurningBounds(double of_third, double of_rounding, double of_lengths)
       : third(of_third), rounding(of_rounding), lengths(of_lengths) {}
@@ -120,6 +122,12 @@ struct TurningBounds {
     third = third_of(rate_n, frame.rate_a, frame.rate_b, {distance, speed, bend}, of_a, of_b) * (1 + 0x1p-40);
     lengths = norm(frame.way.value) + of_a + of_b + speed * stretch;
     rounding = PairFrame<Degree>::rounding * lengths + frame.way_error + frame.rate_error * stretch;
+    const double p = distance + of_a + of_b;
+    const double p1 = speed + frame.rate_a * of_a + frame.rate_b * of_b;
+    const double p2 = bend + frame.rate_a * frame.rate_a * of_a + frame.rate_b * frame.rate_b * of_b;
+    rate_rounding = PairFrame<Degree>::rounding * (rate_n * p + p1) + rate_n * frame.way_error + frame.rate_error;
+    bend_rounding = PairFrame<Degree>::rounding * (rate_n * (rate_n * p + 2 * p1) + p2) +
+                    rate_n * (rate_n * frame.way_error + 2 * frame.rate_error);
   }
 
   /// The first, but for roundings. `way`: bounds on its length, and those of its derivatives.

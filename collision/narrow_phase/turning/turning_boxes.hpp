@@ -74,8 +74,8 @@ class TurningBoxes {
   Conditions unsure(const PairFrame<Degree>& frame, int way, double stretch) const {
     if (!frame.certain || !(stretch <= frame.stretch(box_a_.radius + box_b_.radius, stretch))) return all(way);
     Conditions unsure = 0;
-    every_jet(frame, way, stretch, [&](int number, const Jet& f, double third) {
-      if (!(positive_for(f, third, stretch) >= stretch && f.value > 0)) unsure |= Conditions{1} << number;
+    every_jet(frame, way, stretch, [&](int number, const Jet& f, const TurningBounds& bounds) {
+      if (!(positive_for(f, bounds.third, stretch) >= stretch && f.value > 0)) unsure |= Conditions{1} << number;
       return true;
     });
     return unsure;
@@ -101,6 +101,10 @@ class TurningBoxes {
     if (stretch == all || time_of_turning() == never) return after_wait(t, wait, stretch);
     return after_wait(t, std::max(wait, revolving_apart_for(frame, way)), stretch);
   }
+
+  /// The same along a way that is known to be open just after the time of the frame, however narrow it is then: that
+  /// time where doubles do not tell.
+  double open_until(const PairFrame<Degree>& frame, int way, double horizon) const;
 
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;
@@ -297,7 +301,7 @@ double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame,
   return std::max(along(normalized(frame.way.value)), along((way % 2 != 0 ? 1 : -1) * normalized(u)));
 }
 
-/// Calls visit(number, f, bound of |f'''|) with the function of each condition of a way, less what rounding can make of
+/// Calls visit(number, f, bounds) with the function of each condition of a way, less what rounding can make of
 /// it during the stretch, until it returns false. f is n . (way + vertices of b - vertices of a) less what does not
 /// turn.
 template <int Degree>
@@ -361,7 +365,7 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
     for (std::size_t k = 0; k < count; ++k) {
       if (number >> k & 1) f = f + 2.0 * width[k];
     }
-    if (!visit(number, f, bounds.third)) return;
+    if (!visit(number, f, bounds)) return;
   }
 }
 
@@ -369,11 +373,24 @@ void TurningBoxes<Degree>::every_jet(const PairFrame<Degree>& frame, int way, do
 template <int Degree>
 double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, double stretch) const {
   double wait = stretch;
-  every_jet(frame, way, stretch, [&](int, const Jet& f, double third) {
-    wait = std::min(wait, positive_for(f, third, wait));
+  every_jet(frame, way, stretch, [&](int, const Jet& f, const TurningBounds& bounds) {
+    wait = std::min(wait, positive_for(f, bounds.third, wait));
     return wait > 0;
   });
   return wait;
+}
+
+template <int Degree>
+double TurningBoxes<Degree>::open_until(const PairFrame<Degree>& frame, int way, double horizon) const {
+  if (!frame.certain) return frame.time;
+  const double stretch = frame.stretch(box_a_.radius + box_b_.radius, (horizon - frame.time) * (1 + 0x1p-40));
+  double wait = stretch;
+  every_jet(frame, way, stretch, [&](int, const Jet& f, const TurningBounds& bounds) {
+    const Jet least{f.value, f.rate - bounds.rate_rounding, f.bend - bounds.bend_rounding};
+    wait = std::min(wait, std::max(positive_for(f, bounds.third, wait), positive_after(least, bounds.third, wait)));
+    return wait > 0;
+  });
+  return after_wait(frame.time, wait, stretch);
 }
 
 }  // namespace kds::collision

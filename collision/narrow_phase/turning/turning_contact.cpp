@@ -191,17 +191,29 @@ bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
   return dot(contact.normal, rates.velocity(contact.point)) < -rates.noise(contact.point);
 }
 
+/// Of two bodies that penetrate just after t and do not approach.
+struct Overlap {
+  double parts;   ///< when they part; or `never`, if they are deeper in each other before
+  double deeper;  ///< when they are deeper in each other by more than roundings, or `never`
+};
+template <class Ways, class Pair, int Degree>
+Overlap overlap_from(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t,
+                     double horizon) {
+  // Mostly they have parted at once.
+  double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
+  const double deeper = bodies_fall_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
+  if (parts == never) parts = ways.first_parting(t, std::min(deeper, horizon));
+  return {parts, deeper};
+}
+
 /// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
-/// are looked at next when they are deeper in each other by more than roundings, or again after they have parted.
+/// are looked at next when they are deeper in each other, or again after they have parted.
 template <class Ways, class Pair, int Degree>
 double first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t,
                       double horizon) {
   while (t <= horizon && !approach_at<Degree>(a, b, t)) {
-    // Mostly they have parted at once.
-    double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
-    const double deeper = bodies_fall_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
-    if (parts == never) parts = ways.first_parting(t, std::min(deeper, horizon));
-    t = parts < deeper ? ways.first_penetration(parts, horizon) : deeper;
+    const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t, horizon);
+    t = overlap.parts < overlap.deeper ? ways.first_penetration(overlap.parts, horizon) : overlap.deeper;
   }
   return t <= horizon ? t : never;
 }
@@ -241,6 +253,35 @@ double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double 
   if (!(t0 <= horizon)) return never;
   if (!turning_counts(a.shape, b.shape)) return t0;
   return with_ways<Degree>(a, b, [&](const auto& pair) { return pair.apart_until(t0, horizon); });
+}
+
+/// Of bodies that overlap at t0 as of those that are in contact then: see first_contact(). What that would go on to
+/// look for, from the time at which they part, is mostly not needed: their motions change before.
+template <int Degree>
+double TurningContact<Degree>::apart_again_until(const Body& a, const Body& b, double t0, double horizon,
+                                                 ContactMode mode) {
+  if (!(t0 <= horizon) || !turning_counts(a.shape, b.shape)) return t0;
+  return with_ways<Degree>(a, b, [&](const auto& pair) {
+    using Pair = std::decay_t<decltype(pair)>;
+    if constexpr (!requires { pair.open_until(pair.frame(t0), 0, horizon); }) {
+      return t0;
+    } else {
+      using Ways = WaysApart<Pair, RememberedSigns&>;
+      RememberedSigns signs;
+      const Ways ways(pair, signs);
+      double t = t0;
+      if (ways.penetrate(t0)) {
+        const double begun = std::max(a.motion.start(), b.motion.start());
+        if (mode == ContactMode::transparent || (begun < t0 && ways.penetrate(next_down(t0)))) return t0;
+        if (approach_at<Degree>(a, b, t0)) return t0;
+        const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t0, horizon);
+        if (!(overlap.parts < overlap.deeper)) return t0;
+        t = overlap.parts;
+      }
+      const double until = ways.open_until(t, horizon);
+      return until > t ? until : t0;
+    }
+  });
 }
 
 template <int Degree>

@@ -41,7 +41,8 @@ struct ExactSigns {
 /// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
 /// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
 /// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if they are never all to
-/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`.
+/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_until(frame, way,
+/// horizon)`, a proven time for a way that is open just after that of the frame.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -102,6 +103,12 @@ class WaysApart {
       t = until;
     }
     return never;
+  }
+
+  /// A time until which a way that is open just after t stays so for certain; t if none is, or if doubles do not tell.
+  double open_until(double t, double horizon) const {
+    const int way = open_way(t);
+    return way == none ? t : pair_.open_until(frame(t), way, horizon);
   }
 
  private:
