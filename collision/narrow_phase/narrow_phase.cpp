@@ -125,13 +125,16 @@ double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b,
 
 namespace {
 
-/// As certified_first_contact, by exact signs from the first instant on.
+/// As certified_first_contact, by exact signs from the first instant on. `estimate`: an earlier time will do.
 template <class Motion>
 ContactEstimate sought_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
-                                     double horizon, ContactMode mode, FoundTouch* found) {
+                                     double horizon, ContactMode mode, FoundTouch* found, bool estimate) {
+  const PairTests<Motion>& tests = pair_tests<Motion>(a.shape, b.shape);
   const double end = end_of_search(a, b, t0, horizon);
-  const double time = first_contact(a, b, t0, end, mode, found);
-  return time == never && end < horizon ? ContactEstimate{end, false} : ContactEstimate{time, true};
+  const ContactEstimate next = estimate && tests.estimated_contact
+                                   ? tests.estimated_contact(a, b, t0, end, mode)
+                                   : ContactEstimate{first_contact(a, b, t0, end, mode, found), true};
+  return next.time == never && end < horizon ? ContactEstimate{end, false} : next;
 }
 
 /// The estimate that a proof makes which has got as far as `apart`; none where it tells nothing.
@@ -151,7 +154,7 @@ ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const Movi
     const double apart = pair_tests<Motion>(a.shape, b.shape).apart_until(a, b, t0, horizon, memory);
     if (const auto estimate = estimate_of(apart, t0, horizon)) return *estimate;
   }
-  return sought_first_contact(a, b, t0, horizon, mode, found);
+  return sought_first_contact(a, b, t0, horizon, mode, found, false);
 }
 
 template <class Motion>
@@ -168,11 +171,7 @@ ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const Movi
   return in_least_degree(a, b, [&]<class M>(const MovingShape<M>& x, const MovingShape<M>& y) -> ContactEstimate {
     const PairTests<M>& tests = pair_tests<M>(x.shape, y.shape);
     if (const auto estimate = estimate_of(tests.apart_until(x, y, t0, horizon, memory), t0, horizon)) return *estimate;
-    if (tests.apart_again_until) {
-      const double apart = tests.apart_again_until(x, y, t0, horizon, mode);
-      if (const auto estimate = estimate_of(apart, t0, horizon)) return *estimate;
-    }
-    return sought_first_contact(x, y, t0, horizon, mode, found);
+    return sought_first_contact(x, y, t0, horizon, mode, found, true);
   });
 }
 

@@ -21,9 +21,8 @@ struct PairTests {
   double (*first_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch* found);
   /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
   double (*apart_until)(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
-  /// The same of bodies that may touch at t0, or overlap there without a contact; null where apart_until does that,
-  /// too.
-  double (*apart_again_until)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  /// As first_contact, or an earlier time, of bodies of which apart_until tells nothing at t0. Null: as first_contact.
+  ContactEstimate (*estimated_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
   bool (*in_contact)(const Body& a, const Body& b, double t);
   double (*first_separation)(const Body& a, const Body& b, double t0, double horizon);
   Contact (*contact_at)(const Body& a, const Body& b, double t, const FoundTouch& found);
@@ -37,10 +36,10 @@ const PairTests<Motion>& pair_tests(const PlacedShape& a, const PlacedShape& b);
 KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
-/// Whether tests have a function apart_again_until.
+/// Whether tests have a function estimated_contact.
 template <class Motion, class Tests>
-concept parts_by_signs = requires(const MovingShape<Motion>& body) {
-  Tests::apart_again_until(body, body, 0.0, 0.0, ContactMode{});
+concept estimates_contacts = requires(const MovingShape<Motion>& body) {
+  Tests::estimated_contact(body, body, 0.0, 0.0, ContactMode{});
 };
 
 /// Tests, given as a struct of static functions with these names, of the same pair named the other way round.
@@ -55,9 +54,9 @@ struct Swapped {
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
     return Tests::apart_until(b, a, t0, horizon, memory);
   }
-  static double apart_again_until(const Body& a, const Body& b, double t0, double horizon,
-                                  ContactMode mode) requires parts_by_signs<Motion, Tests> {
-    return Tests::apart_again_until(b, a, t0, horizon, mode);
+  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon,
+                                           ContactMode mode) requires estimates_contacts<Motion, Tests> {
+    return Tests::estimated_contact(b, a, t0, horizon, mode);
   }
   static bool in_contact(const Body& a, const Body& b, double t) { return Tests::in_contact(b, a, t); }
   static double first_separation(const Body& a, const Body& b, double t0, double horizon) {
@@ -112,7 +111,7 @@ class PairTable {
   static constexpr PairTests<Motion> functions_of() {
     PairTests<Motion> tests{Tests::first_contact, Tests::apart_until,      nullptr,
                             Tests::in_contact,    Tests::first_separation, Tests::contact_at};
-    if constexpr (parts_by_signs<Motion, Tests>) tests.apart_again_until = Tests::apart_again_until;
+    if constexpr (estimates_contacts<Motion, Tests>) tests.estimated_contact = Tests::estimated_contact;
     return tests;
   }
   template <class A, class B, class Tests>

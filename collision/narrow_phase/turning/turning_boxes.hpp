@@ -9,6 +9,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -102,9 +103,12 @@ class TurningBoxes {
     return after_wait(t, std::max(wait, revolving_apart_for(frame, way)), stretch);
   }
 
-  /// The same along a way that is known to be open just after the time of the frame, however narrow it is then: that
-  /// time where doubles do not tell.
-  double open_until(const PairFrame<Degree>& frame, int way, double horizon) const;
+  /// How far to look ahead, s; and for how much of that each condition of a way that is open just after the time of the
+  /// frame is positive for certain, however narrow the way is then.
+  double stretch(const PairFrame<Degree>& frame, double longest) const {
+    return frame.certain ? frame.stretch(box_a_.radius + box_b_.radius, longest) : longest;
+  }
+  std::array<double, 16> waits(const PairFrame<Degree>& frame, int way, double stretch) const;
 
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;
@@ -381,16 +385,20 @@ double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, d
 }
 
 template <int Degree>
-double TurningBoxes<Degree>::open_until(const PairFrame<Degree>& frame, int way, double horizon) const {
-  if (!frame.certain) return frame.time;
-  const double stretch = frame.stretch(box_a_.radius + box_b_.radius, (horizon - frame.time) * (1 + 0x1p-40));
-  double wait = stretch;
-  every_jet(frame, way, stretch, [&](int, const Jet& f, const TurningBounds& bounds) {
+std::array<double, 16> TurningBoxes<Degree>::waits(const PairFrame<Degree>& frame, int way, double stretch) const {
+  std::array<double, 16> waits;
+  waits.fill(never);
+  if (!frame.certain) {
+    std::fill_n(waits.begin(), way < 12 ? 8 : 16, 0.0);
+    return waits;
+  }
+  every_jet(frame, way, stretch, [&](int number, const Jet& f, const TurningBounds& bounds) {
     const Jet least{f.value, f.rate - bounds.rate_rounding, f.bend - bounds.bend_rounding};
-    wait = std::min(wait, std::max(positive_for(f, bounds.third, wait), positive_after(least, bounds.third, wait)));
-    return wait > 0;
+    waits[static_cast<std::size_t>(number)] =
+        std::max(positive_for(f, bounds.third, stretch), positive_after(least, bounds.third, stretch));
+    return true;
   });
-  return after_wait(frame.time, wait, stretch);
+  return waits;
 }
 
 }  // namespace kds::collision

@@ -103,9 +103,9 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
     const auto smaller = pair.smaller(depth + more);
     if (!smaller) break;
     const WaysApart<Pair> ways(*smaller);
-    if (ways.penetrate(t)) continue;
-    deeper = ways.first_penetration(t, horizon);
-    break;
+    deeper = ways.first_penetration(t, horizon, true);
+    if (deeper > t) break;
+    deeper = never;
   }
   return std::max(deeper, next_up(t));
 }
@@ -206,16 +206,64 @@ Overlap overlap_from(const Ways& ways, const Pair& pair, const Body<Degree>& a, 
   return {parts, deeper};
 }
 
+/// How long two bodies that do not penetrate just after t surely stay apart, as an estimate of their first contact;
+/// none where doubles do not tell.
+template <class Ways>
+std::optional<ContactEstimate> apart_for_a_while(const Ways& ways, double t, double horizon) {
+  if constexpr (Ways::has_waits) {
+    const double until = ways.open_until(t, horizon);
+    if (until > horizon) return ContactEstimate{never, true};
+    if (until > t) return ContactEstimate{until, false};
+  }
+  return std::nullopt;
+}
+
 /// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
-/// are looked at next when they are deeper in each other, or again after they have parted.
+/// are looked at next when they are deeper in each other, or again after they have parted. `estimate`: an earlier time
+/// will do.
 template <class Ways, class Pair, int Degree>
-double first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t,
-                      double horizon) {
+ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b,
+                               double t, double horizon, bool estimate) {
   while (t <= horizon && !approach_at<Degree>(a, b, t)) {
     const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t, horizon);
-    t = overlap.parts < overlap.deeper ? ways.first_penetration(overlap.parts, horizon) : overlap.deeper;
+    if (!(overlap.parts < overlap.deeper)) {
+      t = overlap.deeper;
+      continue;
+    }
+    if (estimate) {
+      if (const auto found = apart_for_a_while(ways, overlap.parts, horizon)) return *found;
+    }
+    t = ways.first_penetration(overlap.parts, horizon);
   }
-  return t <= horizon ? t : never;
+  return {t <= horizon ? t : never, true};
+}
+
+/// The first contact in [t0, horizon], or with `estimate` an earlier time, of bodies that doubles have not proved apart
+/// just after t0.
+template <int Degree>
+ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon, ContactMode mode,
+                             bool estimate) {
+  return with_ways<Degree>(a, b, [&](const auto& pair) -> ContactEstimate {
+    using Pair = std::decay_t<decltype(pair)>;
+    using Ways = WaysApart<Pair, RememberedSigns&>;
+    RememberedSigns signs;
+    const Ways ways(pair, signs);
+    if (estimate) {
+      if (const auto found = apart_for_a_while(ways, t0, horizon)) return *found;
+    }
+    const double first = ways.first_penetration(t0, horizon, estimate);
+    if (first == never || mode == ContactMode::transparent) return {first, true};
+    if (first == t0) {
+      // Whether what they overlap by counts is as seen from when these motions began, whenever it is asked.
+      const double begun = std::max(a.motion.start(), b.motion.start());
+      if (begun < t0 && ways.penetrate(next_down(t0))) {
+        const double met = ways.first_penetration(begun, t0);
+        const auto contact = first_approach<Ways, Pair, Degree>(ways, pair, a, b, met, horizon, false);
+        if (contact.time >= t0) return contact;
+      }
+    }
+    return first_approach<Ways, Pair, Degree>(ways, pair, a, b, first, horizon, estimate);
+  });
 }
 
 }  // namespace
@@ -228,24 +276,17 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
     return without_turning<Degree>(
         a, b, [&](const auto& x, const auto& y) { return collision::first_contact(x, y, t0, horizon, mode); });
   }
-  return with_ways<Degree>(a, b, [&](const auto& pair) {
-    using Pair = std::decay_t<decltype(pair)>;
-    using Ways = WaysApart<Pair, RememberedSigns&>;
-    RememberedSigns signs;
-    const Ways ways(pair, signs);
-    const double first = ways.first_penetration(t0, horizon);
-    if (first == never || mode == ContactMode::transparent) return first;
-    if (first == t0) {
-      // Whether what they overlap by counts is as seen from when these motions began, whenever it is asked.
-      const double begun = std::max(a.motion.start(), b.motion.start());
-      if (begun < t0 && ways.penetrate(next_down(t0))) {
-        const double met = ways.first_penetration(begun, t0);
-        const double t = first_approach<Ways, Pair, Degree>(ways, pair, a, b, met, horizon);
-        if (t >= t0) return t;
-      }
-    }
-    return first_approach<Ways, Pair, Degree>(ways, pair, a, b, first, horizon);
-  });
+  return contact_from<Degree>(a, b, t0, horizon, mode, false).time;
+}
+
+/// What exact tests would look for after a while is mostly not needed: motions change before. So of bodies that have
+/// just met only that is proved.
+template <int Degree>
+ContactEstimate TurningContact<Degree>::estimated_contact(const Body& a, const Body& b, double t0, double horizon,
+                                                          ContactMode mode) {
+  if (!(t0 <= horizon)) return {never, true};
+  if (!turning_counts(a.shape, b.shape)) return {first_contact(a, b, t0, horizon, mode, nullptr), true};
+  return contact_from<Degree>(a, b, t0, horizon, mode, true);
 }
 
 template <int Degree>
@@ -253,35 +294,6 @@ double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double 
   if (!(t0 <= horizon)) return never;
   if (!turning_counts(a.shape, b.shape)) return t0;
   return with_ways<Degree>(a, b, [&](const auto& pair) { return pair.apart_until(t0, horizon); });
-}
-
-/// Of bodies that overlap at t0 as of those that are in contact then: see first_contact(). What that would go on to
-/// look for, from the time at which they part, is mostly not needed: their motions change before.
-template <int Degree>
-double TurningContact<Degree>::apart_again_until(const Body& a, const Body& b, double t0, double horizon,
-                                                 ContactMode mode) {
-  if (!(t0 <= horizon) || !turning_counts(a.shape, b.shape)) return t0;
-  return with_ways<Degree>(a, b, [&](const auto& pair) {
-    using Pair = std::decay_t<decltype(pair)>;
-    if constexpr (!requires { pair.open_until(pair.frame(t0), 0, horizon); }) {
-      return t0;
-    } else {
-      using Ways = WaysApart<Pair, RememberedSigns&>;
-      RememberedSigns signs;
-      const Ways ways(pair, signs);
-      double t = t0;
-      if (ways.penetrate(t0)) {
-        const double begun = std::max(a.motion.start(), b.motion.start());
-        if (mode == ContactMode::transparent || (begun < t0 && ways.penetrate(next_down(t0)))) return t0;
-        if (approach_at<Degree>(a, b, t0)) return t0;
-        const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t0, horizon);
-        if (!(overlap.parts < overlap.deeper)) return t0;
-        t = overlap.parts;
-      }
-      const double until = ways.open_until(t, horizon);
-      return until > t ? until : t0;
-    }
-  });
 }
 
 template <int Degree>

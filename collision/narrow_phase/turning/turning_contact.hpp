@@ -39,10 +39,10 @@ struct TurningContact {
   using Body = MovingShape<Motion>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
+  /// The same, or an earlier time before which there is no contact.
+  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
   /// A time before which there is no contact; t0 where that takes exact signs.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);
-  /// The same of bodies that have just met and part: from signs that are exact at t0 and doubles that follow them.
-  static double apart_again_until(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/pair_frame.hpp"
 #include "kds/turning/turning_certificate.hpp"
 #include "kds/turning/turning_failure_time.hpp"
 
@@ -82,7 +83,7 @@ class WaysApart {
       stuck = false;
       const int way = open_way(t);
       if (way == none) return t;
-      const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
+      double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
       const double fails = closes(way, t, until);
       if (fails == never && until == horizon) return never;
       t = std::min(fails, until);
@@ -105,10 +106,19 @@ class WaysApart {
     return never;
   }
 
+  static constexpr bool has_waits = requires(const Pair& pair, const Frame& frame) {
+    pair.waits(frame, 0, pair.stretch(frame, 0.0));
+  };
+
   /// A time until which a way that is open just after t stays so for certain; t if none is, or if doubles do not tell.
-  double open_until(double t, double horizon) const {
+  double open_until(double t, double horizon) const requires has_waits {
     const int way = open_way(t);
-    return way == none ? t : pair_.open_until(frame(t), way, horizon);
+    if (way == none) return t;
+    const Frame& frame = this->frame(t);
+    const double all = (horizon - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
+    const auto waits = pair_.waits(frame, way, stretch);
+    const double wait = *std::min_element(waits.begin(), waits.end());
+    return wait >= all ? never : after_wait(t, wait, stretch);
   }
 
  private:
@@ -181,9 +191,26 @@ class WaysApart {
   }
 
   /// The first double in [t, until] just after which a condition of a way is broken, or `never`. Mostly it is soon, and
-  /// then few conditions have to be looked at.
-  double closes(int way, double t, double until) const {
+  /// then few conditions have to be looked at. `until` may become less.
+  double closes(int way, double t, double& until) const {
     const Frame& frame = this->frame(t);
+    if constexpr (has_waits) {
+      const double all = (until - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
+      if (stretch < all) until = std::max(next_up(t), std::min(until, next_down(t + stretch)));
+      // Those first that may be broken first: then the others are mostly known not to be broken before.
+      auto waits = pair_.waits(frame, way, stretch);
+      double first = never;
+      for (;;) {
+        const auto least = std::min_element(waits.begin(), waits.end());
+        if (*least >= stretch || (first != never && next_down(t + *least) >= first)) return first;
+        *least = never;
+        const auto bit = Conditions{1} << (least - waits.begin());
+        pair_.every_condition(way, bit, [&](const auto& condition) {
+          first = std::min(first, signs_.failure_time(condition, t, std::min(first, until)));
+          return true;
+        });
+      }
+    }
     const double soon = t + soon_part * (until - t);
     for (const double end : {soon, until}) {
       double first = never;
