@@ -94,11 +94,12 @@ inline double positive_for(const Jet& f, double third, double longest) {
 }
 
 /// The same of a function that is known not to be negative at first, whatever doubles make of its value: for all x in
-/// (0, s]. Its rate and bend are to be rounded down.
+/// (0, s]. `rate_error`, `bend_error`: how much less its rate and bend may be.
 ///
 /// Method: it is at least x (rate + bend x / 2 - third x^2 / 6).
-inline double positive_after(const Jet& f, double third, double longest) {
-  return positive_for({f.rate, f.bend / 2, -third / 3}, 0, longest);
+inline double positive_after(const Jet& f, double rate_error, double bend_error, double third, double longest) {
+  const Jet over_x{f.rate - rate_error, (f.bend - bend_error) / 2, -third / 3};
+  return std::max(positive_for(f, third, longest), positive_for(over_x, 0, longest));
 }
 
 }  // namespace kds::collision

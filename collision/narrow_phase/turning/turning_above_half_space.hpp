@@ -121,6 +121,16 @@ class TurningAboveHalfSpace {
   double apart_until(double t, double horizon) const { return apart_until(frame(t), horizon); }
   double apart_until(const Frame& frame, double horizon) const;
 
+  /// How far to look ahead, s; and for how much of that all corners are above the plane for certain, if they are just
+  /// after the time of the frame, however near to it.
+  double stretch(const Frame& frame, double longest) const {
+    if (!frame.certain) return longest;
+    return frame.stretch(std::abs(plane_.offset) + corners_.grown_by() + corners_.radius(), longest);
+  }
+  double open_wait(const Frame& frame, int, double stretch) const {
+    return frame.certain ? above_for(frame, stretch, true) : 0;
+  }
+
   /// How deep the body is in the half-space at t, in doubles.
   double depth(double t) const { return std::max(0.0, -lowest(frame(t))); }
 
@@ -144,6 +154,9 @@ class TurningAboveHalfSpace {
     return frame.way_error + PairFrame<Degree>::rounding * lengths;
   }
 
+  /// For how much of the stretch all corners are above the plane for certain. `open`: they are known to be just after
+  /// the time of the frame.
+  double above_for(const Frame& frame, double stretch, bool open) const;
   double lowest(const Frame& frame) const {
     double least = never;
     corners_.search([&](const BoxOfCorners& box) { return frame.lowest(box); }, [&] { return least; },
@@ -169,13 +182,19 @@ double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, d
   const double all = (horizon - t) * (1 + 0x1p-40);
   const double rate = norm(frame.spin_b);
   const double lengths = std::abs(plane_.offset) + corners_.grown_by();
-  const double stretch = frame.stretch(lengths + corners_.radius(), all);
+  const double stretch = this->stretch(frame, all);
   const double reach = rate > 0 ? corners_.revolving_reach(-frame.normal, frame.of_body(frame.spin_b / rate))
                                 : frame.origin.value - lowest(frame);
   const double roundings = PairFrame<Degree>::rounding * (lengths + corners_.radius());
   const double wait =
       revolving_apart_for(frame, plane_.normal, plane_.offset + corners_.grown_by() + reach + roundings);
   if (wait >= all || !(rate > 0)) return after_wait(t, wait, stretch);
+  return after_wait(t, std::max(wait, above_for(frame, stretch, false)), stretch);
+}
+
+template <int Degree, class Corners>
+double TurningAboveHalfSpace<Degree, Corners>::above_for(const Frame& frame, double stretch, bool open) const {
+  const double lengths = std::abs(plane_.offset) + corners_.grown_by();
   const TurningBounds bounds(frame, 0, lengths, corners_.radius(), stretch);
   double first = stretch;
   const auto positive = [&](Jet f) {
@@ -189,10 +208,15 @@ double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, d
     if (!(however_turned < first)) return first;
     return std::max(however_turned, positive(centre - Jet{frame.reach(box) + box.rounding, frame.rate_b * radius, 0}));
   };
+  const auto positive_of_corner = [&](Jet f) {
+    if (!open) return positive(f);
+    f.value -= bounds.rounding;
+    return positive_after(f, bounds.rate_rounding, bounds.bend_rounding, bounds.third, first);
+  };
   corners_.search(
       positive_of_box, [&] { return first; },
-      [&](std::uint32_t i) { first = std::min(first, positive(frame.height_jet(corners_[i]))); });
-  return after_wait(t, std::max(wait, first), stretch);
+      [&](std::uint32_t i) { first = std::min(first, positive_of_corner(frame.height_jet(corners_[i]))); });
+  return first;
 }
 
 }  // namespace kds::collision

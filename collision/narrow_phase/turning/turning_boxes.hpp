@@ -109,6 +109,10 @@ class TurningBoxes {
     return frame.certain ? frame.stretch(box_a_.radius + box_b_.radius, longest) : longest;
   }
   std::array<double, 16> waits(const PairFrame<Degree>& frame, int way, double stretch) const;
+  double open_wait(const PairFrame<Degree>& frame, int way, double stretch) const {
+    const auto waits = this->waits(frame, way, stretch);
+    return *std::min_element(waits.begin(), waits.end());
+  }
 
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;
@@ -393,9 +397,8 @@ std::array<double, 16> TurningBoxes<Degree>::waits(const PairFrame<Degree>& fram
     return waits;
   }
   every_jet(frame, way, stretch, [&](int number, const Jet& f, const TurningBounds& bounds) {
-    const Jet least{f.value, f.rate - bounds.rate_rounding, f.bend - bounds.bend_rounding};
     waits[static_cast<std::size_t>(number)] =
-        std::max(positive_for(f, bounds.third, stretch), positive_after(least, bounds.third, stretch));
+        positive_after(f, bounds.rate_rounding, bounds.bend_rounding, bounds.third, stretch);
     return true;
   });
   return waits;

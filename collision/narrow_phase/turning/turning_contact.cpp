@@ -210,7 +210,7 @@ Overlap overlap_from(const Ways& ways, const Pair& pair, const Body<Degree>& a, 
 /// none where doubles do not tell.
 template <class Ways>
 std::optional<ContactEstimate> apart_for_a_while(const Ways& ways, double t, double horizon) {
-  if constexpr (Ways::has_waits) {
+  if constexpr (Ways::follows_open_ways) {
     const double until = ways.open_until(t, horizon);
     if (until > horizon) return ContactEstimate{never, true};
     if (until > t) return ContactEstimate{until, false};

@@ -42,8 +42,9 @@ struct ExactSigns {
 /// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
 /// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
 /// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if they are never all to
-/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_until(frame, way,
-/// horizon)`, a proven time for a way that is open just after that of the frame.
+/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame, way,
+/// stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the same
+/// of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -106,18 +107,17 @@ class WaysApart {
     return never;
   }
 
-  static constexpr bool has_waits = requires(const Pair& pair, const Frame& frame) {
-    pair.waits(frame, 0, pair.stretch(frame, 0.0));
+  static constexpr bool follows_open_ways = requires(const Pair& pair, const Frame& frame) {
+    pair.open_wait(frame, 0, pair.stretch(frame, 0.0));
   };
 
   /// A time until which a way that is open just after t stays so for certain; t if none is, or if doubles do not tell.
-  double open_until(double t, double horizon) const requires has_waits {
+  double open_until(double t, double horizon) const requires follows_open_ways {
     const int way = open_way(t);
     if (way == none) return t;
     const Frame& frame = this->frame(t);
     const double all = (horizon - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
-    const auto waits = pair_.waits(frame, way, stretch);
-    const double wait = *std::min_element(waits.begin(), waits.end());
+    const double wait = pair_.open_wait(frame, way, stretch);
     return wait >= all ? never : after_wait(t, wait, stretch);
   }
 
@@ -194,7 +194,7 @@ class WaysApart {
   /// then few conditions have to be looked at. `until` may become less.
   double closes(int way, double t, double& until) const {
     const Frame& frame = this->frame(t);
-    if constexpr (has_waits) {
+    if constexpr (requires { pair_.waits(frame, way, 0.0); }) {
       const double all = (until - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
       if (stretch < all) until = std::max(next_up(t), std::min(until, next_down(t + stretch)));
       // Those first that may be broken first: then the others are mostly known not to be broken before.
