@@ -157,7 +157,9 @@ function fillTable() {
     for (let k = 0; k < data.coefficients; ++k) {
       const cell = document.createElement('td'), input = document.createElement('input');
       const c = motion[name][k] ?? 0;
-      Object.assign(input, {type: 'number', step: 'any', value: Number(c.toPrecision(4)), title: c});
+      // Seven characters are seen on a telephone.
+      const four = Number(c.toPrecision(4)), shown = String(four).length > 7 ? Number(c.toPrecision(3)) : four;
+      Object.assign(input, {type: 'number', step: 'any', value: shown, title: c});
       input.setAttribute('aria-label', `${data.elements[i].name} ${name}${names[k] ? ', times' + names[k] : ''}`);
       input.dataset.of = `${i} ${name} ${k}`;
       input.addEventListener('change', () => type(input, i, name, k));
