@@ -8,7 +8,6 @@
 #include "kds/simulator.hpp"
 #include "structures/delaunay.hpp"
 
-#include <array>
 #include <iostream>
 #include <map>
 #include <string>
@@ -19,7 +18,7 @@ using List = examples::ListRule<Motion<2>>;
 using Path = certificates::PlaneMotion<2>;
 
 /// Four points: how many flips of their triangulation there are, which the page shows under this title.
-std::uint64_t flips(const std::array<Path, 4>& paths, course::Page& page, const std::string& title) {
+std::uint64_t flips(const std::vector<Path>& paths, course::Page& page, const std::string& title) {
   MovingSet<Path> points;
   for (const Path& path : paths) points.add(path, 0);
   Kinetic<structures::DelaunayRule<Path>> delaunay(points, 0);
@@ -40,12 +39,11 @@ int main(int argc, char** argv) {
                     0, 8);
   page.legend.event = "a swap";
   const std::vector<Motion<2>> usual{
-      {{{1, 0, 0}}, 0},             // a is at rest
-      {{{2, -1, 0.25}}, 0},         // b: (t - 2)^2 / 4 above a, touches it at t = 2
-      {{{8, -1, 0}}, 0},            // c, d, e: all at 4 when t = 4
-      {{{4, 0, 0}}, 0},
-      {{{0.75, 1, -0.046875}}, 0},
-      {{{7, 0.5, -0.0625}}, 0},     // f, g: one parabola, written about 0 and about 4
+      {{{1, 0, 0}}, 0},      // a is at rest
+      {{{2, -1, 0.25}}, 0},  // b: (t - 2)^2 / 4 above a, touches it at t = 2
+      {{{8, -1, 0}}, 0},     // c, d, e: all at 4 when t = 4
+      {{{4, 0, 0}}, 0},         {{{0.75, 1, -0.046875}}, 0},
+      {{{7, 0.5, -0.0625}}, 0},  // f, g: one parabola, written about 0 and about 4
       {{{8, 0, -0.0625}}, 4},
   };
   MovingSet<Motion<2>> values;
@@ -86,10 +84,13 @@ int main(int argc, char** argv) {
     for (double& c : result.coordinate[1].c) c *= y;
     return result;
   };
-  std::array<Path, 4> square{corner, turned(corner, -1, 1), turned(corner, -1, -1), turned(corner, 1, -1)};
-  std::cout << "a growing square: " << flips(square, page, "Four on a circle for ever") << " flips\n";
+  std::vector<Path> square{corner, turned(corner, -1, 1), turned(corner, -1, -1), turned(corner, 1, -1)};
+  const auto flips_of = [&](const std::string& title) {
+    return flips(page.motions_of_drawing(argc, argv, title, square), page, title);
+  };
+  std::cout << "a growing square: " << flips_of("Four on a circle for ever") << " flips\n";
   square[0] = Path{{Polynomial<2>{{0.5, 0.375, 0}}, Polynomial<2>{{0.5, 0.375, 0}}}, 0};
-  std::cout << "one corner overtakes the circle of the others at t = 4: "
-            << flips(square, page, "Four on a circle once") << " flip\n";
+  std::cout << "one corner overtakes the circle of the others at t = 4: " << flips_of("Four on a circle once")
+            << " flip\n";
   page.write(argc, argv, "08_degeneracies");
 }

@@ -85,7 +85,7 @@ class AabbTreeRule {
   }
 
   const AabbTreeOptions& options() const { return options_; }
-  const BoxTree<Dimension>& tree() const { return tree_; }
+  const BoxTree<TreeBox<Dimension>>& tree() const { return tree_; }
   /// The fat box. Precondition: the element is there.
   const Box& box(Id id) const { return tree_.box(id); }
 
@@ -189,7 +189,7 @@ class AabbTreeRule {
 
   AabbTreeOptions options_;
   PairListener listener_;
-  BoxTree<Dimension> tree_;
+  BoxTree<TreeBox<Dimension>> tree_;
   std::vector<std::vector<Id>> partners_;  ///< by id, ascending
 };
 

@@ -186,10 +186,7 @@ class AlphaComplexRule : public StandsOn<Delaunay, TriangleChange> {
   /// Of the conditions whose slots begin with this one.
   auto meets(Slot first, const Pen& repair) const {
     return [this, first, &repair](std::size_t i) {
-      const Choice choice = condition(first + static_cast<Slot>(i), repair.elements(), 1);
-      bool met = true;
-      kds::detail::with_certificate(choice, [&](const auto& certificate) { met = repair.sign(certificate) >= 0; });
-      return met;
+      return repair.sign(condition(first + static_cast<Slot>(i), repair.elements(), 1)) >= 0;
     };
   }
 

@@ -18,6 +18,9 @@ namespace kds::structures {
 /// A binary tree with a box in each leaf, known by the caller's id; the box of an inner node is the hull of its two
 /// children's. It knows nothing of time.
 ///
+/// A Box is a TreeBox, or another class with hull(a, b), which overlaps with all that a or b overlaps with, overlaps(),
+/// contains(), surface() and ==.
+///
 /// A box is inserted where it adds least to the surfaces of the nodes [Goldsmith87], going down from the root; on the
 /// way back, a node and its nephew change places where that makes a box smaller [Kensler08]. Where surfaces do not
 /// decide (equal boxes, or infinite ones) it goes to the side with fewer leaves. A box that changes but stays within
@@ -25,11 +28,9 @@ namespace kds::structures {
 ///
 /// Cost: insertion, removal and change O(depth), which is O(log n) except for nested boxes and the like; visit()
 /// O(depth + boxes found), in scenes where boxes overlap with few others; 2 n - 1 nodes.
-template <std::size_t Dimension>
+template <class Box>
 class BoxTree {
  public:
-  using Box = TreeBox<Dimension>;
-
   std::size_t size() const { return root_ == none ? 0 : nodes_[root_].leaves; }
   bool contains(Id id) const { return id < leaf_.size() && leaf_[id] != none; }
   /// Precondition: contains(id).
@@ -42,10 +43,10 @@ class BoxTree {
   /// Gives it another box. Precondition: contains(id).
   void change(Id id, Box box);
 
-  /// Calls found(id) for all boxes that overlap with this one, in no particular order. The tree must not be changed
-  /// from within the call.
-  template <class Found>
-  void visit(const Box& box, Found&& found) const;
+  /// Calls found(id) for all boxes that overlap with this one, or with whatever else a Box can be compared with, in no
+  /// particular order. The tree must not be changed from within the call.
+  template <class Other, class Found>
+  void visit(const Other& box, Found&& found) const;
 
   /// The number of steps from the root to the deepest leaf: 0 for one box or none. O(n depth).
   std::size_t depth() const;
@@ -96,8 +97,8 @@ class BoxTree {
 
 // ---------------------------------------------------------------------------------------------------------------
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::insert(Id id, Box box) {
+template <class Box>
+void BoxTree<Box>::insert(Id id, Box box) {
   if (id >= leaf_.size()) leaf_.resize(id + std::size_t{1}, none);
   const Place leaf = take_node();
   nodes_[leaf].box = box;
@@ -112,8 +113,8 @@ void BoxTree<Dimension>::insert(Id id, Box box) {
   refit(parent);
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::remove(Id id) {
+template <class Box>
+void BoxTree<Box>::remove(Id id) {
   const Place leaf = leaf_[id];
   leaf_[id] = none;
   free_.push_back(leaf);
@@ -125,8 +126,8 @@ void BoxTree<Dimension>::remove(Id id) {
   refit(nodes_[sibling].parent);
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::change(Id id, Box box) {
+template <class Box>
+void BoxTree<Box>::change(Id id, Box box) {
   const Place parent = nodes_[leaf_[id]].parent;
   if (parent != none && !nodes_[parent].box.contains(box)) {
     remove(id);
@@ -136,9 +137,9 @@ void BoxTree<Dimension>::change(Id id, Box box) {
   refit(parent);
 }
 
-template <std::size_t Dimension>
-template <class Found>
-void BoxTree<Dimension>::visit(const Box& box, Found&& found) const {
+template <class Box>
+template <class Other, class Found>
+void BoxTree<Box>::visit(const Other& box, Found&& found) const {
   if (root_ == none || !nodes_[root_].box.overlaps(box)) return;
   std::vector<Place> open{root_};
   while (!open.empty()) {
@@ -154,8 +155,8 @@ void BoxTree<Dimension>::visit(const Box& box, Found&& found) const {
   }
 }
 
-template <std::size_t Dimension>
-typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
+template <class Box>
+typename BoxTree<Box>::Place BoxTree<Box>::take_node() {
   if (free_.empty()) {
     nodes_.emplace_back();
     return static_cast<Place>(nodes_.size() - 1);
@@ -168,8 +169,8 @@ typename BoxTree<Dimension>::Place BoxTree<Dimension>::take_node() {
 
 /// The node with which a new box is to share a parent. Stopping at a node adds a node with the surface of the hull;
 /// going on enlarges this node by what the box adds to it, and costs at least what the box adds to the child.
-template <std::size_t Dimension>
-typename BoxTree<Dimension>::Place BoxTree<Dimension>::best_sibling(const Box& box) const {
+template <class Box>
+typename BoxTree<Box>::Place BoxTree<Box>::best_sibling(const Box& box) const {
   Place place = root_;
   while (!nodes_[place].is_leaf()) {
     const Node& node = nodes_[place];
@@ -188,8 +189,8 @@ typename BoxTree<Dimension>::Place BoxTree<Dimension>::best_sibling(const Box& b
   return place;
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::replace(Place place, Place other) {
+template <class Box>
+void BoxTree<Box>::replace(Place place, Place other) {
   const Place parent = nodes_[place].parent;
   nodes_[other].parent = parent;
   if (parent == none) {
@@ -199,8 +200,8 @@ void BoxTree<Dimension>::replace(Place place, Place other) {
   }
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::update(Place place) {
+template <class Box>
+void BoxTree<Box>::update(Place place) {
   Node& node = nodes_[place];
   const Node& left = nodes_[node.child[0]];
   const Node& right = nodes_[node.child[1]];
@@ -210,8 +211,8 @@ void BoxTree<Dimension>::update(Place place) {
 
 /// [Kensler08]: of the four exchanges of a child with a child of its sibling, makes the one that saves the most
 /// surface, if one saves any.
-template <std::size_t Dimension>
-void BoxTree<Dimension>::rotate(Place place) {
+template <class Box>
+void BoxTree<Box>::rotate(Place place) {
   double most = 0;
   std::size_t side = 0, which = 0;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -234,8 +235,8 @@ void BoxTree<Dimension>::rotate(Place place) {
   update(other);
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::refit(Place place) {
+template <class Box>
+void BoxTree<Box>::refit(Place place) {
   for (; place != none; place = nodes_[place].parent) {
     const Box box = nodes_[place].box;
     const std::uint32_t leaves = nodes_[place].leaves;
@@ -245,8 +246,8 @@ void BoxTree<Dimension>::refit(Place place) {
   }
 }
 
-template <std::size_t Dimension>
-std::size_t BoxTree<Dimension>::depth() const {
+template <class Box>
+std::size_t BoxTree<Box>::depth() const {
   std::size_t most = 0;
   for (const Place leaf : leaf_) {
     std::size_t steps = 0;
@@ -256,8 +257,8 @@ std::size_t BoxTree<Dimension>::depth() const {
   return most;
 }
 
-template <std::size_t Dimension>
-double BoxTree<Dimension>::relative_surface() const {
+template <class Box>
+double BoxTree<Box>::relative_surface() const {
   if (size() < 2) return 0;
   double sum = 0;
   std::vector<Place> open{root_};
@@ -271,8 +272,8 @@ double BoxTree<Dimension>::relative_surface() const {
   return sum / nodes_[root_].box.surface();
 }
 
-template <std::size_t Dimension>
-void BoxTree<Dimension>::audit(const std::string& name) const {
+template <class Box>
+void BoxTree<Box>::audit(const std::string& name) const {
   const auto fail = [&](Place place, const char* what) {
     throw AuditFailure(name + ": node " + std::to_string(place) + ": " + what);
   };

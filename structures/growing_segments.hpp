@@ -5,9 +5,12 @@
 #include "kds/audit.hpp"
 #include "kds/framework/kinetic_rule.hpp"
 #include "kds/roots/failure_time.hpp"
+#include "structures/box_tree.hpp"
+#include "structures/track_box.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -52,9 +55,12 @@ struct GrowingStop {
 ///
 /// Each growing end has one certificate, that it has not reached the next line that another will have crossed before
 /// it. When it has, either the other has stopped short of there, and the next line takes its place (an internal event),
-/// or the end stops (external). Cost: O(n) to insert or remove an end, O(1) for most events and O(n) for one in
-/// sixteen: an end keeps the next sixteen lines in order. n certificates (compact, local). The lines that an end
-/// crosses on its way are all events, internal ones, whether there is a track near or not.
+/// or the end stops (external). An end keeps the next four in order; those are sought in a tree of the boxes of tracks
+/// (TrackBox), which grow, up to a time that is far enough. Cost: to insert an end, and for one event in four, the
+/// ways through the tree to those near by, O(log n) where tracks are short against the whole; O(n) for an end that
+/// comes to fewer than five others; O(1) for other events; O(n) steps without arithmetic to remove an end. n
+/// certificates (compact, local). All tracks that an end would cross on its way if none stopped are events, internal
+/// ones.
 class GrowingSegmentsRule {
  public:
   static constexpr const char* name = "GrowingSegments";
@@ -86,7 +92,7 @@ class GrowingSegmentsRule {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(ends_);
+    archive(ends_, tree_, borders_);
   }
 
  private:
@@ -112,7 +118,7 @@ class GrowingSegmentsRule {
 
     Next(Id other, const Arrival& a, double now) : at(other), arrival(a), time(failure_time(a, now, never)) {}
   };
-  static constexpr std::size_t kept_ahead = 16;
+  static constexpr std::size_t kept_ahead = 4;
 
   /// 1 if the first comes before the second, 0 at one time.
   static int order(const Arrival& a, const Arrival& b) {
@@ -135,6 +141,13 @@ class GrowingSegmentsRule {
     const auto is_positive = [](const Ball<double>& x) { return x.middle > x.radius; };
     return (is_positive(first) && is_positive(last)) || (is_positive(-first) && is_positive(-last));
   }
+  /// Whether it is before a time.
+  static bool is_past(const Arrival& arrival, double time) {
+    const Ball<double> there = arrival.polynomial<Ball<double>>(time).c[0];
+    if (std::abs(there.middle) > there.radius) return there.middle < 0;
+    return arrival.polynomial<Exact>(time).c[0].sign() < 0;
+  }
+  static TreeBox<2> way(const certificates::PlaneMotion<1>& path, double from, double to);
   static Arrival across(const certificates::PlaneMotion<1>& end, const certificates::PlaneMotion<1>& track);
   static std::optional<Arrival> arrival_at(const Element& end, const Element& other);
 
@@ -145,12 +158,19 @@ class GrowingSegmentsRule {
     return !ends_[other].stop || is_covered(arrival, other, elements);
   }
   static void keep_first(std::vector<Next>& found);
+  template <class Look>
+  void look_at(const TrackBox::Place* place, Id id, const Look& look) const;
+  void put_into_tree(Id id, const Element& element);
+  TrackBox box_of(Id id, const Element& element) const;
   void look_ahead(Id id, const Next* after, Pen& repair);
   void go_on(Id id, const Next& from, Pen& repair);
   void put_ahead(Id id, Id other, Pen& repair);
   void settle(Id id, const Arrival* until, Pen& repair);
 
-  std::vector<End> ends_;  ///< by id
+  std::vector<End> ends_;    ///< by id
+  BoxTree<TrackBox> tree_;   ///< of all but the borders
+  std::vector<Id> borders_;  ///< whole lines
+  double enough_ = 1;        ///< s: how far ahead the next ones were found the last time; changes no result
 };
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -167,6 +187,8 @@ inline auto GrowingSegmentsRule::arrival_at(const Element& end, const Element& o
   const Arrival crossing = across(end.path, other.path);
   if (crossing.side != 0) {
     if (other.whole) return crossing;
+    // The line behind the other's beginning is no track.
+    if (is_past({other.path, end.path, Arrival::At::line, -crossing.side}, other.path.start)) return std::nullopt;
     const int other_first =
         -static_cast<int>(crossing.side) * sign_after(certificates::CrossesFirst{end.path, other.path}, end.path.start);
     return other_first >= 0 ? std::optional(crossing) : std::nullopt;
@@ -180,7 +202,8 @@ inline auto GrowingSegmentsRule::arrival_at(const Element& end, const Element& o
   const bool on_one_line = sign_after(Arrival{other.path, end.path, Arrival::At::line, 1}, end.path.start) == 0;
   if (!on_one_line) return std::nullopt;
   const bool face = velocity(other) != 0 && (velocity(other) < 0) != (speed < 0);
-  return Arrival{end.path, other.path, face ? Arrival::At::tip : Arrival::At::beginning, speed < 0 ? -1.0 : 1.0};
+  const Arrival arrival{end.path, other.path, face ? Arrival::At::tip : Arrival::At::beginning, speed < 0 ? -1.0 : 1.0};
+  return is_past(arrival, other.path.start) ? std::nullopt : std::optional(arrival);
 }
 
 /// Whether the track of the other, as far as it is known, is where the end arrives.
@@ -188,46 +211,8 @@ inline bool GrowingSegmentsRule::is_covered(const Arrival& arrival, Id other,
                                             const MovingSet<Element>& elements) const {
   if (elements[other].whole) return true;
   const Arrival passing = arrival.at == Arrival::At::line ? across(arrival.track, arrival.end) : arrival;
-  const double begin = arrival.track.start;
-  if (sign_after(passing, begin) < 0 && passing.polynomial<Exact>(begin).c[0].sign() != 0) return false;
   const End& of_other = ends_[other];
   return arrival.at == Arrival::At::beginning || !of_other.stop || order(passing, *of_other.arrival) >= 0;
-}
-
-/// In order.
-inline void GrowingSegmentsRule::keep_first(std::vector<Next>& found) {
-  const auto kept = found.begin() + static_cast<std::ptrdiff_t>(std::min(found.size(), kept_ahead));
-  std::partial_sort(found.begin(), kept, found.end(), is_before);
-  found.erase(kept, found.end());
-}
-
-/// Finds the next tracks that an end comes to after another, or else after now.
-inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repair) {
-  std::vector<Next> found;
-  bool all = true;
-  double reach = never;
-  for (const Id other : repair.elements().ids()) {
-    if (other == id || !is_there(other)) continue;
-    if (reach < never && surely_later(repair[id], repair[other], repair.now(), reach)) continue;
-    const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
-    if (!arrival || !may_stop(other, *arrival, repair.elements())) continue;
-    if (!after && !is_ahead(*arrival, repair.now())) continue;
-    const Next next(other, *arrival, repair.now());
-    if (!after || is_before(*after, next)) found.push_back(next);
-    if (found.size() < 4 * kept_ahead) continue;
-    keep_first(found);
-    reach = found.back().time;
-    all = false;
-  }
-  End& end = ends_[id];
-  end.knows_all = all && found.size() <= kept_ahead;
-  keep_first(found);
-  end.reach = end.knows_all ? never : found.back().time;
-  const std::size_t kept = found.size();
-  end.ahead.clear();
-  for (std::size_t i = kept; i-- > 0;) end.ahead.push_back(found[i].at);
-  end.arrival = kept > 0 ? std::optional(found[0].arrival) : std::nullopt;
-  repair.certify(id);
 }
 
 /// Takes the next track in place of one that the end has passed.
@@ -264,6 +249,7 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   end.ahead.erase(end.ahead.begin());
   end.knows_all = false;
   end.reach = Next(end.ahead.front(), *arrival_at(repair[id], repair[end.ahead.front()]), repair.now()).time;
+  put_into_tree(id, repair[id]);
 }
 
 /// Takes an end through all arrivals that are due, and come before another if one is given. What it depends on is
@@ -286,6 +272,7 @@ inline void GrowingSegmentsRule::settle(Id id, const Arrival* until, Pen& repair
     }
     ends_[id].stop = true;
     ends_[id].time = repair.now();
+    put_into_tree(id, repair[id]);
     repair.certify(id);
     repair.report({id, next.at});
   }
@@ -301,14 +288,23 @@ inline void GrowingSegmentsRule::insert(Id id, Pen& repair) {
   if (id >= ends_.size()) ends_.resize(id + std::size_t{1});
   ends_[id] = {};
   ends_[id].there = true;
+  const Element& element = repair[id];
+  if (element.whole) borders_.push_back(id);
   look_ahead(id, nullptr, repair);
-  for (const Id other : repair.elements().ids()) {
-    if (other != id && is_there(other) && !ends_[other].stop) put_ahead(other, id, repair);
+  // Those that may come to it before the last one that they keep. The tree must not change while it is looked through.
+  std::vector<Id> comers;
+  const auto comes = [&](Id other) { comers.push_back(other); };
+  element.whole ? look_at(nullptr, id, comes) : tree_.visit(TrackBox::of(element.path, never), comes);
+  std::sort(comers.begin(), comers.end());
+  for (const Id other : comers) {
+    if (other != id && !ends_[other].stop) put_ahead(other, id, repair);
   }
 }
 
 inline void GrowingSegmentsRule::remove(Id id, Pen& repair) {
   ends_[id] = {};
+  if (tree_.contains(id)) tree_.remove(id);
+  std::erase(borders_, id);
   repair.retire(id);
   for (const Id other : repair.elements().ids()) {
     if (!is_there(other) || ends_[other].stop) continue;
@@ -335,9 +331,12 @@ inline void GrowingSegmentsRule::audit(const MovingSet<Element>& elements, doubl
   const auto fail = [](Id id, const char* what) {
     throw AuditFailure(std::string(name) + ": end " + std::to_string(id) + ": " + what);
   };
+  tree_.audit(name);
   for (Id id = 0; id < ends_.size(); ++id) {
     const End& end = ends_[id];
     if (end.there != elements.contains(id)) fail(id, "is missing or gone");
+    if (tree_.contains(id) != (end.there && !elements[id].whole)) fail(id, "is in the tree of tracks, or is not");
+    if (tree_.contains(id) && tree_.box(id) != box_of(id, elements[id])) fail(id, "has another track in the tree");
     if (!end.there || end.stop) continue;
     for (const Id other : elements.ids()) {
       const std::optional<Arrival> arrival = other == id ? std::nullopt : arrival_at(elements[id], elements[other]);
@@ -349,3 +348,5 @@ inline void GrowingSegmentsRule::audit(const MovingSet<Element>& elements, doubl
 }
 
 }  // namespace kds::structures
+
+#include "structures/growing_segments_ahead.hpp"

@@ -145,10 +145,7 @@ class PointsInsideRule : public StandsOn<ElementsRule<R>> {
   }
   auto is_within(std::uint32_t pair, const Pen& repair) const {
     return [this, pair, &repair](std::size_t i) {
-      const auto side = this->inner()[pairs_[pair].region].side(i, repair[pairs_[pair].point], 1);
-      bool within = true;
-      kds::detail::with_certificate(side, [&](const auto& certificate) { within = repair.sign(certificate) >= 0; });
-      return within;
+      return repair.sign(this->inner()[pairs_[pair].region].side(i, repair[pairs_[pair].point], 1)) >= 0;
     };
   }
   void tell(std::uint32_t pair, InsideChange::What what, Pen& repair) {

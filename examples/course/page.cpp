@@ -83,7 +83,8 @@ std::vector<Page::Piece> Page::given(const std::string& text, std::size_t most, 
     const std::size_t i = pieces.size();
     const auto read = [&](const char* name) {
       const auto coefficients = motion.at(name).get<std::vector<double>>();
-      if (coefficients.size() > most) refuse(i, std::string(name) + " has more than " + std::to_string(most) + " numbers");
+      if (coefficients.size() > most)
+        refuse(i, std::string(name) + " has more than " + std::to_string(most) + " numbers");
       for (const double c : coefficients) {
         if (!std::isfinite(c)) refuse(i, std::string(name) + " has a number that is not finite");
       }
@@ -94,6 +95,11 @@ std::vector<Page::Piece> Page::given(const std::string& text, std::size_t most, 
     pieces.push_back({0, start, on_line ? std::vector<double>() : read("x"), read("y")});
   }
   return pieces;
+}
+
+std::vector<Page::Piece> Page::given_to_drawing(const std::string& text, const std::string& title, std::size_t most) {
+  const ordered_json drawings = ordered_json::parse(text);
+  return drawings.contains(title) ? given(drawings[title].dump(), most, false) : std::vector<Piece>();
 }
 
 void Page::add_piece(Id id, Piece piece) {
@@ -151,10 +157,9 @@ std::string Page::json() const {
   page["end"] = end_;
   page["play"] = play_time;
   if (coefficients_ > 0) page["coefficients"] = coefficients_;
-  page["names"] = {{"event", legend.event},
-                   {"marked", legend.marked},
-                   {"outline", legend.outline},
-                   {"edges", legend.edges}};
+  put(page, "changeable", changeable_);
+  page["names"] = {
+      {"event", legend.event}, {"marked", legend.marked}, {"outline", legend.outline}, {"edges", legend.edges}};
   put(page, "window", window);
   put(page, "walls", walls);
   put(page, "edges", edge_style);

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +22,10 @@ enum class View { line, plane, space };
 
 /// A certificate as a page shows it.
 struct Held {
-  std::string fact;         ///< in words
-  std::vector<Id> members;  ///< the elements that it is about; for a circle or sphere first those that are on it
-  double fails = never;     ///< s
-  std::string function;     ///< what is not negative while it holds: "e \u2212 d"
+  std::string fact;                ///< in words
+  std::vector<Id> members;         ///< the elements that it is about; for a circle or sphere first those that are on it
+  double fails = never;            ///< s
+  std::string function;            ///< what is not negative while it holds: "e \u2212 d"
   std::vector<double> polynomial;  ///< its coefficients in the time since the page begins, rounded
 
   friend bool operator==(const Held&, const Held&) = default;
@@ -32,13 +33,13 @@ struct Held {
 
 /// The state of a structure between two events. Parts that a structure does not have stay empty.
 struct State {
-  std::string text;                     ///< in words
-  std::vector<Id> order;                ///< the least first
-  std::vector<Id> outline;              ///< corners of a polygon
-  std::vector<std::array<Id, 2>> edges; ///< lines between elements
+  std::string text;                          ///< in words
+  std::vector<Id> order;                     ///< the least first
+  std::vector<Id> outline;                   ///< corners of a polygon
+  std::vector<std::array<Id, 2>> edges;      ///< lines between elements
   std::vector<std::array<Id, 3>> triangles;  ///< that turn left and cover the outline: the page draws Voronoi cells
-  std::vector<Id> marked;               ///< elements that stand out: the greatest, say
-  std::vector<Held> certificates;       ///< that hold
+  std::vector<Id> marked;                    ///< elements that stand out: the greatest, say
+  std::vector<Held> certificates;            ///< that hold
 };
 
 /// The names of the parts of a state in the legend.
@@ -61,17 +62,18 @@ class Page {
   /// the end comes after the beginning.
   Page(View view, std::string title, std::string about, double begin, double end);
 
-  /// The motions of the elements, each for the whole run: `usual`, or those of the program's second argument, in JSON: an
-  /// array of 1 to 26 objects like {"start": 0, "y": [1, 0.2, 0.09]}, in the plane with "x" too. Whoever opens the page
-  /// may then change them there, and it runs the program anew, if that is in the page (program_in_page.hpp). Throws
-  /// std::invalid_argument for motions that are too many, too long or not finite, and what nlohmann::json throws for
-  /// text that is something else.
+  /// The motions of the elements, each for the whole run: `usual`, or those of the program's second argument, in JSON:
+  /// an array of 1 to 26 objects like {"start": 0, "y": [1, 0.2, 0.09]}, in the plane with "x" too. Whoever opens the
+  /// page may then change them there, and it runs the program anew, if that is in the page (program_in_page.hpp).
+  /// Throws std::invalid_argument for motions that are too many, too long or not finite, and what nlohmann::json throws
+  /// for text that is something else.
   template <int Degree>
   std::vector<Motion<Degree>> motions(int argc, char** argv, std::vector<Motion<Degree>> usual) {
     coefficients_ = Degree + 1;
     if (argc <= 2) return usual;
     std::vector<Motion<Degree>> all;
-    for (const Piece& piece : given(argv[2], Degree + 1, true)) all.push_back({polynomial<Degree>(piece.y), piece.start});
+    for (const Piece& piece : given(argv[2], Degree + 1, true))
+      all.push_back({polynomial<Degree>(piece.y), piece.start});
     return all;
   }
   template <int Degree>
@@ -84,6 +86,22 @@ class Page {
       all.push_back({{polynomial<Degree>(piece.x), polynomial<Degree>(piece.y)}, piece.start});
     }
     return all;
+  }
+
+  /// The motions of the points of a drawing (draws()) in the plane, written about time 0, of which whoever opens the
+  /// page may drag them too: `usual`, or those that the program's third argument, a JSON object, has under the title,
+  /// as many. Throws as motions() does.
+  template <int Degree>
+  std::vector<certificates::PlaneMotion<Degree>> motions_of_drawing(
+      int argc, char** argv, const std::string& title, std::vector<certificates::PlaneMotion<Degree>> usual) {
+    changeable_.push_back(title);
+    const std::vector<Piece> pieces = argc > 3 ? given_to_drawing(argv[3], title, Degree + 1) : std::vector<Piece>();
+    if (pieces.empty()) return usual;
+    if (pieces.size() != usual.size()) throw std::invalid_argument("Page: " + title + ": other points than usual");
+    for (std::size_t i = 0; i < usual.size(); ++i) {
+      usual[i] = {{polynomial<Degree>(pieces[i].x), polynomial<Degree>(pieces[i].y)}, pieces[i].start};
+    }
+    return usual;
   }
 
   /// A moving element: a dot, or a ball of this radius, or a box of these half widths. Names of one or two letters are
@@ -175,6 +193,7 @@ class Page {
     return p;
   }
   static std::vector<Piece> given(const std::string& text, std::size_t most, bool on_line);
+  static std::vector<Piece> given_to_drawing(const std::string& text, const std::string& title, std::size_t most);
   void add_piece(Id id, Piece piece);
   Element& find(Id id);
   /// Where a picture has an element: across and up.
@@ -184,13 +203,14 @@ class Page {
   View view_;
   std::string title_, about_;
   double begin_, end_;
-  int coefficients_ = 0;  ///< of a motion that may be changed, in a coordinate; 0: none may be
+  int coefficients_ = 0;                 ///< of a motion that may be changed, in a coordinate; 0: none may be
+  std::vector<std::string> changeable_;  ///< titles of drawings whose points may be changed
   std::vector<Element> elements_;
   std::vector<Event> events_;
   std::vector<State> states_;
   std::vector<Span> spans_;
   std::vector<std::pair<double, Drawing>> drawings_;  ///< since when each is shown
-  std::vector<std::size_t> open_;  ///< spans that continue in the last state
+  std::vector<std::size_t> open_;                     ///< spans that continue in the last state
 };
 
 }  // namespace kds::course

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/events/event_queue.hpp"
+#include "kds/framework/certificate_choice.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/uncertain.hpp"
 
@@ -40,10 +41,13 @@ class Repair<E, void> {
   const E& operator[](Id id) const { return elements_[id]; }
   const MovingSet<E>& elements() const { return elements_; }
 
-  /// Sign of a certificate at now+, exact; of sampled elements that of their samples.
+  /// Sign of a certificate at now+, exact; of sampled elements that of their samples. Of a choice (std::optional,
+  /// std::variant) that of the certificate that it has, 0 if it has none.
   template <class C>
-  int sign(const C& certificate) const {
-    return exact_sign(certificate, now_);
+  int sign(const C& choice) const {
+    int sign = 0;
+    detail::with_certificate(choice, [&](const auto& certificate) { sign = exact_sign(certificate, now_); });
+    return sign;
   }
 
   /// The slot's certificate has changed, or there is none any more: certificate() will be called for it.

@@ -2,8 +2,9 @@
 //
 // First the sorted list of the framework (examples/list_in_forty_lines.hpp) against the tuned one
 // (structures/sorted_list.hpp) on the same values: CPU time a swap as a ratio, the two run in turn, median of ROUNDS
-// (the first argument, 9). Then each structure of the family on n points with random positions in a unit square and
-// speeds up to 1, run for a while: events, the four measures, and CPU time an event as a ratio to that of a swap of the
+// (the first argument, 9). Then insertions of ends that grow, and points in rectangles against lists that a range
+// tree would have. Then each structure of the family on n points with random positions in a unit square and speeds
+// up to 1, run for a while: events, the four measures, and CPU time an event as a ratio to that of a swap of the
 // tuned list of as many values.
 #include "certificates/plane_motion.hpp"
 #include "examples/list_in_forty_lines.hpp"
@@ -20,6 +21,7 @@
 #include "structures/heap.hpp"
 #include "structures/k_nearest.hpp"
 #include "structures/periodic_delaunay.hpp"
+#include "structures/points_inside.hpp"
 #include "structures/sorted_list.hpp"
 #include "structures/spatial_triangulation.hpp"
 #include "structures/tournament.hpp"
@@ -244,6 +246,37 @@ void measure_insertion(Id n, int rounds) {
   std::printf("insertion of an end that grows / swap of a tuned list of 1 000,1,%u,50,%.0f\n", n, median(ratios));
 }
 
+/// Who is in m rectangles with a tenth of the square's sides, for 0.1 s, against the two sorted lists that a range tree
+/// of the n points would have to keep at least.
+void compare_with_range_tree(Id n, Id regions, int rounds) {
+  using Path = certificates::PlaneMotion<1>;
+  using Rectangle = structures::BoxRegion<Path>;
+  constexpr double end = 0.1;
+  std::vector<double> ratios;
+  Cost inside{}, lists{};
+  for (int round = 0; round < rounds; ++round) {
+    Random random(n);
+    MovingSet<Path> points;
+    MovingSet<Rectangle> rectangles;
+    for (Id id = 0; id < n; ++id) points.insert(id, random_path<1>(random), 0);
+    for (Id id = 0; id < regions; ++id) {
+      const Path low = random_path<1>(random);
+      Path high = low;
+      for (auto& x : high.coordinate) x.c[0] += 0.1;
+      rectangles.insert(id, {low, high}, 0);
+    }
+    Kinetic<ElementsRule<Rectangle>> set(rectangles, 0);
+    Kinetic<structures::PointsInsideRule<Rectangle>> structure(points, set, 0);
+    inside = run(end, set, structure);
+    const Cost x = tuned_list<1>(n, end), y = tuned_list<1>(n + 1, end);
+    lists = {x.seconds + y.seconds, x.events + y.events};
+    ratios.push_back(inside.seconds / lists.seconds);
+  }
+  std::printf("points in %u rectangles / two tuned lists,1,%u,%llu / %llu,%.2f\n", regions, n,
+              static_cast<unsigned long long>(inside.events), static_cast<unsigned long long>(lists.events),
+              median(ratios));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -252,6 +285,11 @@ int main(int argc, char** argv) {
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<1>(n, rounds);
   for (const Id n : {100u, 1000u, 10000u}) compare_lists<2>(n, rounds);
   for (const Id n : {100u, 1000u, 10000u}) measure_insertion(n, n < 10000 ? rounds : 1);
+  for (const Id n : {100u, 1000u}) {
+    for (const Id regions : {1u, 10u, 100u, 1000u}) {
+      if (n * regions <= 100000) compare_with_range_tree(n, regions, rounds);
+    }
+  }
   std::printf(
       "\nstructure,degree,n,events,external share,certificates/event,most/event,held/n,most/element,"
       "time of an event / swap of a tuned list\n");

@@ -35,7 +35,7 @@ TEST_CASE("a box tree finds what brute force finds", "[box_tree]") {
     const std::uint64_t seed = 970;
     CAPTURE(seed, coarse);
     Random random(seed);
-    BoxTree<3> tree;
+    BoxTree<TreeBox<3>> tree;
     std::map<Id, TreeBox<3>> boxes;
     int wrong = 0;
     for (int step = 0; step < 2000; ++step) {
@@ -71,7 +71,7 @@ TEST_CASE("surfaces spare visits: a tree of many small boxes is a small multiple
   const std::uint64_t seed = 971;
   CAPTURE(seed);
   Random random(seed);
-  BoxTree<2> tree;
+  BoxTree<TreeBox<2>> tree;
   const Id n = 1024;  // of a grid of 32 by 32, in random order
   std::vector<Id> order(n);
   for (Id id = 0; id < n; ++id) order[id] = id;
@@ -90,7 +90,7 @@ TEST_CASE("surfaces spare visits: a tree of many small boxes is a small multiple
 TEST_CASE("a box tree stays shallow where boxes are one, sorted or nested", "[box_tree][degeneracy]") {
   const Id n = 1000;
   const auto grow = [&](auto&& box_of) {
-    BoxTree<2> tree;
+    BoxTree<TreeBox<2>> tree;
     for (Id id = 0; id < n; ++id) tree.insert(id, box_of(static_cast<double>(id)));
     tree.audit("tree");
     std::size_t found = 0;
@@ -111,7 +111,7 @@ TEST_CASE("a box tree stays shallow where boxes are one, sorted or nested", "[bo
 }
 
 TEST_CASE("a box of the tree may be given to its changes", "[box_tree]") {
-  BoxTree<3> tree;
+  BoxTree<TreeBox<3>> tree;
   const TreeBox<3> box{{1, 2, 3}, {4, 5, 6}};
   tree.insert(0, box);
   for (Id id = 1; id < 300; ++id) tree.insert(id, tree.box(id - 1));
@@ -124,11 +124,11 @@ TEST_CASE("a box of the tree may be given to its changes", "[box_tree]") {
 
 TEST_CASE("equal box trees are saved as equal bytes", "[box_tree][snapshot]") {
   const auto grown = [] {
-    BoxTree<2> tree;
+    BoxTree<TreeBox<2>> tree;
     for (Id id = 0; id < 5; ++id) tree.insert(id, {{1.0 * id, 0}, {1.0 * id + 1, 1}});
     return tree;
   };
-  BoxTree<2> tree = grown(), other = grown();
+  BoxTree<TreeBox<2>> tree = grown(), other = grown();
   CHECK(save(tree) == save(other));
   // Nine nodes of 4 doubles and 5 numbers, five leaves, the root; and how long these lists and that of the free are.
   CHECK(save(tree).bytes().size() == 9 * (4 * 8 + 5 * 4) + 5 * 4 + 4 + 3 * (8 + 4));

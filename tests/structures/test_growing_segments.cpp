@@ -226,6 +226,28 @@ TEST_CASE("growing segments stop where the definition says, whatever comes, goes
   CHECK(stopped > 1000);
 }
 
+TEST_CASE("growing segments that are many stop where the definition says, among others that come and go",
+          "[growing_segments]") {
+  for (const Scene scene : {Scene::generic, Scene::lattice, Scene::coarse_clock}) {
+    for (std::uint64_t seed = 40; seed < 48; ++seed) {
+      CAPTURE(static_cast<int>(scene), seed);
+      Random random(seed);
+      Structure structure(beginning(scene));
+      Id count = 0;
+      for (; count < 60; ++count) structure.insert(count, random_end(random, scene, structure.simulator.now()));
+      int wrong = 0;
+      for (int step = 0; step < 12; ++step) {
+        wrong +=
+            structure.run_to(structure.simulator.now() + 0.25 * span(scene) * static_cast<double>(random.below(3)));
+        const Id id = static_cast<Id>(random.below(count));
+        if (structure.ends.contains(id)) structure.remove(id);
+        structure.insert(count++, random_end(random, scene, structure.simulator.now()));
+      }
+      CHECK(wrong == 0);
+    }
+  }
+}
+
 TEST_CASE("a trial of growing segments finds nothing wrong", "[growing_segments]") {
   const auto make = [](Random& random, Kind kind, double now) {
     GrowingEnd end{random_plane_motion<1>(random, kind, now)};

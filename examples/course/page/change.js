@@ -7,20 +7,22 @@ let program = null, grip = null;
 /** What a handle adds to a position: the way of so many seconds at the velocity of now. */
 const ahead = duration * 0.09;
 
+/** The points of drawings that may be changed, by title. They stay the same points for the whole run. */
+const drawnOf = (run) => Object.fromEntries((run.changeable ?? []).map((title) => [title,
+  run.drawings.find((drawing) => drawing.title === title).places.map(({x, y}) => ({start: 0, x: [...x], y: [...y]}))]));
 const motionsOf = (run) => run.elements.map(({pieces: [{start, x, y}]}) => ({start, ...(x && {x: [...x]}), y: [...y]}));
 const coordinates = data.view === 'line' ? ['y'] : ['x', 'y'];
 
-/** Rounded so that formulas stay short. */
-function rounded(number) {
-  const {ky} = $('figure').dataset;
-  const range = $('figure').getBoundingClientRect().height / Math.abs(ky);
+/** Rounded so that formulas stay short, in the scale of a picture. */
+function rounded(number, svg = $('figure')) {
+  const range = svg.getBoundingClientRect().height / Math.abs(svg.dataset.ky);
   return Number(number.toFixed(Math.max(0, 3 - Math.floor(Math.log10(range)))));
 }
 
 /** Runs the program. If it refuses the motions, all stays as it was. */
-function change(motions) {
+function change(motions, drawn = drawnOf(data)) {
   try {
-    showRun(JSON.parse(pageOf(program, motions)));
+    showRun(JSON.parse(pageOf(program, motions, drawn)));
   } catch (error) {
     $('change-says').textContent = `The program refused that: ${error.message}`;
     return false;
@@ -31,45 +33,52 @@ function change(motions) {
 
 /** The motion with another position or velocity at `now`, in one coordinate; the other of the two stays. */
 function moved(coefficients, elapsed, position, velocity) {
-  const c = [...coefficients];
+  const c = [...coefficients], short = (number) => rounded(number, gripped());
   if (c.length > 1) {
-    c[1] = rounded(c[1] + velocity - slope(c, elapsed));
+    c[1] = short(c[1] + velocity - slope(c, elapsed));
     c[0] = 0;
   }
-  c[0] = rounded(position - (value(c, elapsed) - c[0]));
-  if (c.length === 1) c[0] = rounded(position);
+  c[0] = short(position - (value(c, elapsed) - c[0]));
+  if (c.length === 1) c[0] = short(position);
   return c;
 }
 
+/** The picture or drawing in which something is dragged; drawings are made anew in every run. */
+const gripped = () => drawings.find(({title}) => title === grip.title)?.svg ?? $('figure');
+
 /** A grip at a point of the model: what is dragged is the element, or the handle of its velocity. */
 function dragTo(x, y) {
-  const motions = motionsOf(data);
-  const motion = motions[grip.index];
+  const motions = motionsOf(data), drawn = drawnOf(data);
+  const motion = (grip.title ? drawn[grip.title] : motions)[grip.index];
   const elapsed = now - motion.start;
   const target = {x, y};
-  for (const name of coordinates) {
+  for (const name of grip.title ? ['x', 'y'] : coordinates) {
     const [p, v] = [value(motion[name], elapsed), slope(motion[name], elapsed)];
     motion[name] = grip.velocity ? moved(motion[name], elapsed, p, (target[name] - p) / ahead)
                                  : moved(motion[name], elapsed, target[name], v);
   }
-  change(motions);
+  change(motions, drawn);
 }
 
 function pointed(event) {
-  const {x0, kx, y0, ky} = $('figure').dataset;
-  const {left, top} = $('figure').getBoundingClientRect();
+  const svg = gripped(), {x0, kx, y0, ky} = svg.dataset;
+  const {left, top} = svg.getBoundingClientRect();
   return [(event.clientX - left - x0) / kx, (event.clientY - top - y0) / ky];
 }
 
 function take(event) {
-  const handle = event.target.closest('[data-velocity]'), element = event.target.closest('[data-element]');
-  if (!program || (!handle && !element)) return;
+  const handle = event.target.closest('[data-velocity]');
+  const element = event.target.closest('[data-element], [data-node]');
+  const title = event.target.closest('svg')?.dataset.title;
+  if (!program || (!handle && !element) || (title && !data.changeable?.includes(title))) return;
   event.stopImmediatePropagation();
   event.preventDefault();
   play(false);
-  const id = Number((handle ?? element).getAttribute(handle ? 'data-velocity' : 'data-element'));
-  grip = {index: data.elements.findIndex((e) => e.id === id), velocity: handle !== null, from: [event.clientX, event.clientY]};
-  try { $('figure').setPointerCapture(event.pointerId); } catch { /* a pointer that a script has made up */ }
+  const {velocity, node, element: of} = (handle ?? element).dataset;
+  const number = Number(velocity ?? node ?? of);
+  const index = title ? number : data.elements.findIndex((e) => e.id === number);
+  grip = {title, index, velocity: handle !== null, from: [event.clientX, event.clientY]};
+  try { event.currentTarget.setPointerCapture(event.pointerId); } catch { /* a pointer that a script has made up */ }
   rangeKept = true;
 }
 
@@ -103,6 +112,7 @@ const handles = make('g', {});
 /** Velocities of now, as lines with a grip at their end. */
 function drawHandles() {
   const {x0, kx, y0, ky} = $('figure').dataset;
+  if (program) drawings.filter(({title}) => data.changeable?.includes(title)).forEach(drawHandlesOf);
   handles.replaceChildren();
   if (handles.parentNode !== $('figure')) $('figure').append(handles);
   if ((!program && !guessing) || kx === undefined) return;  // in space nothing is dragged but the view
@@ -112,21 +122,31 @@ function drawHandles() {
     const at = (name) => (piece[name] ? value(piece[name], elapsed) : now);
     const rate = (name) => (piece[name] ? slope(piece[name], elapsed) : 1);
     const [x, y] = [Number(x0) + kx * at('x'), Number(y0) + ky * at('y')];
-    const [u, v] = [kx * rate('x') * ahead, ky * rate('y') * ahead];
-    const length = Math.hypot(u, v) || 1;
-    const [from, to] = [10 / length, Math.max(1, 22 / length)];  // a grip under the point could not be taken
-    const stroke = colour.get(element.id);
-    make('path', {class: 'velocity', stroke, d: `M${x + from * u} ${y + from * v}L${x + to * u} ${y + to * v}`}, handles);
-    if (!program) continue;
-    const group = make('g', {class: 'handle', 'data-velocity': element.id,
-                             transform: `translate(${x + to * u} ${y + to * v})`}, handles);
-    make('title', {text: `velocity of ${element.name}`}, group);
-    make('circle', {r: 14, class: 'reach'}, group);
-    make('circle', {r: 5, stroke}, group);
+    drawHandle(handles, [x, y], [kx * rate('x') * ahead, ky * rate('y') * ahead], colour.get(element.id), element.id,
+               element.name);
   }
 }
+function drawHandlesOf({versions, svg, moving}) {
+  const {x0, kx, y0, ky} = svg.dataset;
+  versions[0].places.forEach(({x, y, name}, i) => drawHandle(
+    moving, [Number(x0) + kx * value(x, now), Number(y0) + ky * value(y, now)],
+    [kx * slope(x, now) * ahead, ky * slope(y, now) * ahead], 'var(--point)', i, name));
+}
+/** From a place by a way, in pixels. Of a point at rest the grip is above it: one under it could not be taken. */
+function drawHandle(parent, [x, y], way, stroke, number, name) {
+  const [u, v] = Math.hypot(...way) > 0.5 ? way : [0, -1];
+  const length = Math.hypot(u, v);
+  const [from, to] = [10 / length, Math.max(1, 22 / length)];
+  make('path', {class: 'velocity', stroke, d: `M${x + from * u} ${y + from * v}L${x + to * u} ${y + to * v}`}, parent);
+  if (!program) return;
+  const group = make('g', {class: 'handle', 'data-velocity': number,
+                           transform: `translate(${x + to * u} ${y + to * v})`}, parent);
+  make('title', {text: `velocity of ${name}`}, group);
+  make('circle', {r: 14, class: 'reach'}, group);
+  make('circle', {r: 5, stroke}, group);
+}
 
-/** Coefficients, to be typed: with a keyboard alone everything can be changed. */
+/** Coefficients of elements, to be typed: with a keyboard alone all of these can be changed. */
 function fillTable() {
   const names = ['', ' t', ' t\u00B2'];
   const rows = motionsOf(data).flatMap((motion, i) => coordinates.map((name) => {
@@ -137,7 +157,9 @@ function fillTable() {
     for (let k = 0; k < data.coefficients; ++k) {
       const cell = document.createElement('td'), input = document.createElement('input');
       const c = motion[name][k] ?? 0;
-      Object.assign(input, {type: 'number', step: 'any', value: Number(c.toPrecision(4)), title: c});
+      // Seven characters are seen on a telephone.
+      const four = Number(c.toPrecision(4)), shown = String(four).length > 7 ? Number(c.toPrecision(3)) : four;
+      Object.assign(input, {type: 'number', step: 'any', value: shown, title: c});
       input.setAttribute('aria-label', `${data.elements[i].name} ${name}${names[k] ? ', times' + names[k] : ''}`);
       input.dataset.of = `${i} ${name} ${k}`;
       input.addEventListener('change', () => type(input, i, name, k));
@@ -181,7 +203,7 @@ $('fewer').addEventListener('click', () => change(motionsOf(data).slice(0, -1)))
 $('shuffle').addEventListener('click', () => change(data.elements.map(anyMotion)));
 $('reset').addEventListener('click', () => { showRun(recorded); fillTable(); });
 for (const [name, does] of [['down', take], ['move', drag], ['up', drop], ['cancel', drop]]) {
-  $('figure').addEventListener('pointer' + name, does, true);
+  for (const id of ['figure', 'drawings']) $(id).addEventListener('pointer' + name, does, true);
 }
 
 /** Says plainly what is missing where the program is not in the page, or the browser cannot run it. */
@@ -200,9 +222,9 @@ async function readyToChange() {
     return false;
   }
   $('change-says').textContent = 'Drag a point, or the ring ahead of it: its velocity. The program of this page then ' +
-    'runs anew, in your browser.';
+    'runs anew, in your browser.' + (data.changeable ? ' The points of the drawings can be dragged too.' : '');
   $('change').classList.add('ready');
-  $('figure').classList.add('changeable');
+  for (const id of ['figure', 'drawings']) $(id).classList.add('changeable');
   fillTable();
   draw();
   resize();

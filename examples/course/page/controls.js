@@ -186,6 +186,7 @@ let laidOut = '';
 function resize() {
   layOutDrawings();
   drawDrawings(now);
+  drawHandles();
   const width = $('frame').clientWidth;
   const rest = $('stage').offsetHeight - $('figure').getBoundingClientRect().height;
   const footer = document.querySelector('footer');

@@ -21,7 +21,7 @@ function extent(things, times, of) {
 }
 
 function layOutDrawings() {
-  const kept = drawings.map(({reach}) => reach);
+  const kept = drawings.map(({reach, box}) => ({reach, box}));
   $('drawings').replaceChildren();
   $('drawings').hidden = data.drawings.length === 0;
   drawings.length = 0;
@@ -33,7 +33,8 @@ function layOutDrawings() {
     $('drawings').append(figure);
     figure.append(caption);
     const named = {'data-title': title, role: 'img', 'aria-label': title};
-    const svg = make('svg', {class: 'drawing', height: 0, ...named}, figure);
+    const loose = data.changeable?.includes(title) ? ' loose' : '';
+    const svg = make('svg', {class: 'drawing' + loose, height: 0, ...named}, figure);
     return {caption, svg};
   });
   titles.forEach((title, i) => {
@@ -41,14 +42,16 @@ function layOutDrawings() {
     const versions = data.drawings.filter((drawing) => drawing.title === title);
     const {kind, axis} = versions[0], places = versions.flatMap((drawing) => drawing.places);
     const moves = kind === 'plane' ? times : [data.begin];
-    const box = ['x', 'y'].map((name) => extent(places, moves, (place, t) => value(place[name], t)));
+    // While somebody drags, the scale stays, as that of the picture does.
+    const box = rangeKept && kind === 'plane' && kept[i] ? kept[i].box
+      : ['x', 'y'].map((name) => extent(places, moves, (place, t) => value(place[name], t)));
     const width = svg.clientWidth;
     const height = {tree: 46 + 44 * (box[1][1] - box[1][0]), ruler: 88, plane: 190}[kind];
     set(svg, {viewBox: `0 0 ${width} ${height}`, height});
-    const drawing = {versions, kind, axis, svg, caption, box, width, height};
+    const drawing = {title, versions, kind, axis, svg, caption, box, width, height};
     if (kind === 'ruler') {
-      // While somebody drags, the axis keeps its scale, as the picture does. Every version has all ends.
-      drawing.reach = rangeKept && kept[i] ? kept[i]
+      // Every version has all ends.
+      drawing.reach = rangeKept && kept[i] ? kept[i].reach
         : extent(versions[0].places, times, (place, t) => valueOf(place, axis, t));
     }
     scaleDrawing(drawing);

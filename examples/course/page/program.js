@@ -55,7 +55,7 @@ function runProgram(module, args) {
   return new TextDecoder().decode(bytes);
 }
 
-/** The data of the page that the program writes for these motions: text in JSON. */
-function pageOf(module, motions) {
-  return /^page: (.*)$/m.exec(runProgram(module, ['program', 'page', JSON.stringify(motions)]))[1];
+/** The data of the page that the program writes for these motions, of elements and of points in drawings: JSON. */
+function pageOf(module, motions, drawn) {
+  return /^page: (.*)$/m.exec(runProgram(module, ['program', 'page', ...[motions, drawn].map(JSON.stringify)]))[1];
 }

@@ -5,15 +5,15 @@ window.addEventListener('load', async () => {
   const report = {ready, says: document.getElementById('change-says').textContent, runs: [], guesses: []};
   const figure = document.getElementById('figure');
   const note = (what) => report.runs.push({
-    what, motions: motionsOf(window.course.data), data: JSON.parse(JSON.stringify(window.course.data)),
+    what, motions: motionsOf(window.course.data), points: drawnOf(window.course.data), data: JSON.parse(JSON.stringify(window.course.data)),
     events: document.querySelectorAll('#events button').length, drawn: figure.querySelectorAll('[data-element]').length,
     formula: document.getElementById('formula').textContent,
   });
   /** Drags a part of the picture by so many pixels, in steps. */
-  function drag(part, dx, dy) {
+  function drag(part, dx, dy, inside = figure) {
     const box = part.getBoundingClientRect();
     const [x, y] = [box.left + box.width / 2, box.top + box.height / 2];
-    const send = (kind, k) => (kind === 'down' ? part : figure).dispatchEvent(new PointerEvent('pointer' + kind, {
+    const send = (kind, k) => (kind === 'down' ? part : inside).dispatchEvent(new PointerEvent('pointer' + kind, {
       bubbles: true, cancelable: true, pointerId: 1, clientX: x + dx * k / 3, clientY: y + dy * k / 3}));
     send('down', 0);
     for (let k = 1; k <= 3; ++k) send('move', k);
@@ -27,6 +27,11 @@ window.addEventListener('load', async () => {
     note('a point is dragged');
     drag(figure.querySelector('[data-velocity="1"]'), 5, 31);
     note('a velocity is dragged');
+    const loose = document.querySelector('.loose')?.dataset.title;
+    for (const part of loose ? ['[data-node="2"]', '[data-velocity="0"]'] : []) {
+      drag(document.querySelector(`[data-title="${loose}"] ${part}`), -14, 9, document.getElementById('drawings'));
+      note(`of a drawing ${part} is dragged`);
+    }
     document.getElementById('more').click();
     note('one more');
     const input = document.querySelector('#motions input');
