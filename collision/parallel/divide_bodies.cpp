@@ -213,7 +213,7 @@ std::vector<typename Domains<Motion>::Overlap> Domains<Motion>::end() {
         overlaps_.insert(overlaps_.end(), heard.overlaps.begin(), heard.overlaps.end());
       });
     }
-    store_.end_part();
+    store_.put_part(nullptr);
     sort_overlaps();
   }
   division_.reset();
