@@ -357,6 +357,9 @@ RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
     throw std::invalid_argument(
         "RunOptions.domains: volumes are not told of, nor work profiled, in a scene that is divided");
   }
+  if (divided && options.checkpoint_every > 0 && !options.checkpoint_bodies) {
+    throw std::invalid_argument("RunOptions.checkpoint_bodies: is needed in a scene that is divided");
+  }
   const auto run_of = [&]<class Motion>(std::type_identity<Motion>) {
     return divided ? run_divided<Motion>(scene, options, sink) : run_with<Motion>(scene, options, sink);
   };

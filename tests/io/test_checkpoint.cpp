@@ -133,6 +133,7 @@ TEST_CASE("checkpoint: a run that goes on from one has the events of the run tha
       CHECK(later.text == divided.text.substr(from.state.events));
     }
   }
+  if (!turning) CHECK(seen_in_blocks > 0);
 }
 
 TEST_CASE("checkpoint: of another scene, or other options, it is refused") {
@@ -153,6 +154,8 @@ TEST_CASE("checkpoint: of another scene, or other options, it is refused") {
   RunOptions other = options;
   other.broad_phase = "grid";
   CHECK_NOTHROW(run(scene, other, none));
+  other.domains = 3;
+  CHECK_THROWS_WITH(run(scene, other, none), "RunOptions.checkpoint_bodies: is needed in a scene that is divided");
 }
 
 TEST_CASE("checkpoint: a file has what was written, and one that is damaged is refused") {
@@ -299,7 +302,7 @@ TEST_CASE(
     refused("part of a checkpoint: ");
   }
   std::string damaged = part;
-  damaged[part.size() - 20] = '?';
+  damaged[part.size() - 10] = '?';
   folder.write("run.state.a.1", damaged);
   refused("part of a checkpoint: is damaged");
   folder.write("run.state.a.1", read_file(other.string() + ".a.1"));
