@@ -152,7 +152,6 @@ class Domains {
   std::vector<BodySlot> with_attached(std::span<const BodySlot> slots) const;
   bool answers_for_stored(BodySlot number) const;
   void check_attached(BodySlot sensor, BodySlot owner) const;
-  void share_overlaps(const std::vector<Overlap>& alone);
 
   const WorldOptions options_;
   const std::size_t threads_;

@@ -14,7 +14,7 @@
 
 namespace kds::collision {
 
-/// Some bodies, and pairs that overlap: mostly with one of these; each is saved with at least one body or by itself.
+/// Some bodies, and pairs that overlap: of which one is among these, or of bodies that stand.
 template <class Motion>
 struct SavedBodies {
   using Overlap = typename Engine<Motion>::Overlap;

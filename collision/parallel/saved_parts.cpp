@@ -36,15 +36,17 @@ kds::Snapshot Domains<Motion>::save(double now, const WriteBodies& write, std::s
   const auto& bodies = engine.bodies();
   const std::vector<BodySlot> all = with_attached(answered());
   const auto meshes = store_.is_part() ? meshes_ : bodies.meshes();
-  // Each pair goes with one of its bodies, if this process answers for one.
+  // Each pair goes with one of its bodies, if this process answers for one. Others are told by those who do, but for
+  // pairs of bodies without owners.
   std::unordered_map<BodySlot, std::vector<Overlap>> with;
-  std::vector<Overlap> alone;
+  std::vector<Overlap> others;
   for (const Overlap& overlap : overlaps_) {
-    const bool of_a = answers_for_stored(overlap.a), of_b = answers_for_stored(overlap.b);
-    if (of_a || of_b) {
+    const bool of_a = answers_for_stored(overlap.a);
+    if (of_a || answers_for_stored(overlap.b)) {
       with[of_a ? overlap.a : overlap.b].push_back(overlap);
-    } else {
-      alone.push_back(overlap);
+    } else if (!any() || (division_->owner_of(overlap.a) == Division::nobody &&
+                          division_->owner_of(overlap.b) == Division::nobody)) {
+      others.push_back(overlap);
     }
   }
   std::array<std::uint64_t, 1> sum{0};
@@ -54,7 +56,7 @@ kds::Snapshot Domains<Motion>::save(double now, const WriteBodies& write, std::s
     while (size < left.size() && bodies.attachments().owner(left[size]) != no_body) ++size;
     SavedBodies<Motion> saved;
     saved.parcel = engine.pack(left.first(size), meshes);
-    saved.overlaps = std::exchange(alone, {});
+    saved.overlaps = std::exchange(others, {});
     left = left.subspan(size);
     for (const BodySlot number : saved.parcel.numbers) {
       sum[0] += number_hash(number);
@@ -85,7 +87,7 @@ bool Domains<Motion>::answers_for_stored(BodySlot number) const {
 template <class Motion>
 void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const ReadBodies& read) {
   auto before = store_.begin_part(rest.now);
-  std::vector<Overlap> overlaps, alone;
+  std::vector<Overlap> overlaps;
   std::array<std::uint64_t, 4> found{};  // bodies, the sum of their hashes, attached pairs, bodies of ignored pairs
   std::exception_ptr failure;
   try {
@@ -98,16 +100,17 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
       saved.check(rest);
       store_.store(saved.parcel);
       for (const BodySlot number : saved.parcel.numbers) ++found[0], found[1] += number_hash(number);
-      for (const Overlap& overlap : saved.overlaps) {
-        const bool here = store_.find(overlap.a) != no_body || store_.find(overlap.b) != no_body;
-        (here ? overlaps : alone).push_back(overlap);
-      }
+      overlaps.insert(overlaps.end(), saved.overlaps.begin(), saved.overlaps.end());
     }
     const auto here = [this](BodySlot number) { return store_.find(number) != no_body; };
     for (const auto& [sensor, owner] : rest.bodies.attached) {
       if (here(sensor) && here(owner)) check_attached(sensor, owner), ++found[2];
     }
     for (const auto& [a, b] : rest.bodies.ignored) found[3] += (here(a) ? 1u : 0u) + (here(b) ? 1u : 0u);
+    for (const Overlap& overlap : overlaps) {
+      if (team_.count() > 1 || (here(overlap.a) && here(overlap.b))) continue;  // Of others it is not known here.
+      throw std::runtime_error("snapshot: a pair overlaps of which a body is missing");
+    }
     for (const BodySlot slot : rest.bodies.free) {
       if (here(slot)) throw std::runtime_error("snapshot: a body is where none is");
     }
@@ -132,7 +135,6 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
     if (store_.find(sensor) != no_body) store_.engine().attach(store_.find(sensor), store_.find(owner));
   }
   overlaps_ = std::move(overlaps);
-  share_overlaps(alone);
 }
 
 /// Throws std::runtime_error if a sensor of this process cannot be one that is attached to a body of this process.
@@ -144,22 +146,6 @@ void Domains<Motion>::check_attached(BodySlot sensor, BodySlot owner) const {
   if (turns<Motion> && keeps_orientation(image.bodies[0].placed.shape)) {
     throw std::runtime_error("snapshot: what keeps its orientation is attached");
   }
-}
-
-/// Pairs that were loaded without their bodies: they go to all, and those that have one keep them.
-template <class Motion>
-void Domains<Motion>::share_overlaps(const std::vector<Overlap>& alone) {
-  NewsByProcess news;
-  for (std::size_t process = 0; process < team_.count(); ++process) {
-    if (process != team_.rank() && !alone.empty()) news[process].overlaps = alone;
-  }
-  const auto keep = [&](const std::vector<Overlap>& heard) {
-    for (const Overlap& overlap : heard) {
-      if (store_.find(overlap.a) != no_body || store_.find(overlap.b) != no_body) overlaps_.push_back(overlap);
-    }
-  };
-  keep(alone);
-  exchange_news(letters_of(std::move(news)), [&](const WindowNews<Motion>& heard) { keep(heard.overlaps); });
 }
 
 template <class Motion>
