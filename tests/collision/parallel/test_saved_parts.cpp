@@ -383,8 +383,17 @@ TEST_CASE("Saved parts: a World's state is one with all bodies in the rest", "[p
     });
   }
   // And of one that is saved in parts: attachments, ignored pairs, free slots and timers are there again.
-  StateInParts state = mixed.saved(3, 5);
+  // Those who have loaded it and save it again at once keep together what is attached.
+  const StateInParts first = mixed.saved(3, 5);
+  const Blocks first_blocks = first.blocks();
+  StateInParts state(2);
+  ThreadProcesses(2).run([&](Processes& processes) {
+    ParallelWorld<1> divided(mixed.options, {.threads = 1, .domains = 3, .halo = 0.5}, nullptr, &processes);
+    divided.load_parts(first.rest, share_of(first_blocks, processes.rank(), 2));
+    state.save(divided, processes.rank(), 1);
+  });
   const Blocks blocks = state.blocks();
+  CHECK(blocks.size() == 11);
   ParallelWorld<1> alone(mixed.options, {.threads = 1, .domains = 1});
   alone.load_parts(state.rest, share_of(blocks, 0, 1));
   EventLog<1> log;
