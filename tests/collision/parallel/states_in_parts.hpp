@@ -3,14 +3,20 @@
 
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "tests/collision/parallel/thread_processes.hpp"
 
 #include <cstddef>
 #include <functional>
-#include <memory>
 #include <utility>
 #include <vector>
 
 namespace kds::collision::tests {
+
+/// Work of several processes, or of one.
+inline void run_by(std::size_t count, const std::function<void(Processes*, std::size_t rank)>& work) {
+  if (count == 1) return work(nullptr, 0);
+  ThreadProcesses(count).run([&](Processes& processes) { work(&processes, processes.rank()); });
+}
 
 /// What save_parts() has given to several processes.
 class StateInParts {
