@@ -188,7 +188,11 @@ void run_to_end(World& world, const Scene& scene, const RunOptions& options, Eve
       results.pass();
     }
     if (t == checkpoints.next()) {
-      options.checkpoint(kds::save(world));
+      if constexpr (requires { world.save_parts(options.checkpoint_bodies); }) {
+        options.checkpoint(world.save_parts(options.checkpoint_bodies));
+      } else {
+        options.checkpoint(kds::save(world));
+      }
       checkpoints.pass();
     }
   }
@@ -202,7 +206,11 @@ template <class World, class Added, class Begun>
 RunResult run_in(World& world, const Scene& scene, const RunOptions& options, EventSink& sink, double setup_start,
                  const Added& added, const Begun& begun) {
   if (options.resume) {
-    kds::restore(*options.resume, world);
+    if constexpr (requires { world.load_parts(*options.resume, options.resume_bodies); }) {
+      world.load_parts(*options.resume, options.resume_bodies);
+    } else {
+      kds::restore(*options.resume, world);
+    }
     if (world.size() != scene.size()) {
       throw std::invalid_argument("the state to go on from is of " + std::to_string(world.size()) +
                                   " bodies, and the scene has " + std::to_string(scene.size()));
@@ -342,11 +350,15 @@ RunResult run_divided(const Scene& scene, const RunOptions& options, EventSink& 
 RunResult run(const Scene& scene, const RunOptions& options, EventSink& sink) {
   using kds::certificates::PointMotion;
   using kds::certificates::RigidMotion;
-  const bool divided = options.domains != 1 || options.processes;
+  // A World does not go on from bodies in blocks, but one of a single domain does.
+  const bool divided = options.domains != 1 || options.processes || (options.resume && options.resume_bodies);
   if (scene.is_share() && !options.processes) throw std::invalid_argument("run: it is a share of a scene");
   if (divided && (options.pairs || options.profile)) {
     throw std::invalid_argument(
         "RunOptions.domains: volumes are not told of, nor work profiled, in a scene that is divided");
+  }
+  if (divided && options.checkpoint_every > 0 && !options.checkpoint_bodies) {
+    throw std::invalid_argument("RunOptions.checkpoint_bodies: is needed in a scene that is divided");
   }
   const auto run_of = [&]<class Motion>(std::type_identity<Motion>) {
     return divided ? run_divided<Motion>(scene, options, sink) : run_with<Motion>(scene, options, sink);

@@ -36,13 +36,19 @@ struct RunOptions {
   /// If not null, this is told in each process of what its own domains record, and the sink of process 0 only of events
   /// of stretches that are run as one world: see EventPart. Must outlive the run.
   kds::collision::StepListener* steps = nullptr;
-  /// s of simulated time, > 0: whenever so much has gone by, `checkpoint` is given the state of the run, after the
-  /// events up to then, in all processes. 0: never.
+  /// s of simulated time, > 0: whenever so much has gone by, the state of the run is given away, after the events up to
+  /// then. Of a scene that is divided `checkpoint_bodies` is given the bodies, in each process its own, block by block;
+  /// afterwards `checkpoint` in all processes, and in process 0 with all the rest, as by
+  /// BasicParallelWorld::save_parts(). 0: never.
   double checkpoint_every = 0;
+  std::function<void(std::vector<char>)> checkpoint_bodies{};
   std::function<void(const Snapshot&)> checkpoint{};
-  /// If not null, the run goes on from this one, of a run of the same scene with the same options but `processes`,
-  /// `steps`, `domains`, `threads` and those about checkpoints. RunResult is about what follows.
+  /// If not null, the run goes on from this state, of a run of the same scene with the same options but `processes`,
+  /// `steps`, `domains`, `threads` and those about checkpoints; the same in all processes. RunResult is about what
+  /// follows. `resume_bodies`: if there were blocks, gives each process its share of them
+  /// (BasicParallelWorld::load_parts()).
   const Snapshot* resume = nullptr;
+  std::function<bool(std::vector<char>&)> resume_bodies{};
 };
 
 /// What a run took and did. Where several processes ran it, what they did is summed, and what it took is that of the

@@ -8,6 +8,8 @@
 
 #include <memory>
 #include <span>
+#include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -64,10 +66,20 @@ class BodyStore {
     engine().number_from(first);
     for (BodySlot slot = 0; slot < bodies().slots(); ++slot) part_->slots.add(first + slot, slot);
   }
-  /// Adds those of a parcel that are not here. Precondition: it stores a part.
-  void add(const Parcel<Motion>& parcel) {
+  /// Stores this part again, or the whole if it is null.
+  void put_part(std::unique_ptr<BodyPart<Motion>> part) { part_ = std::move(part); }
+  /// Adds those of a parcel, but for what is attached to what. Throws std::runtime_error for one that is here.
+  /// Precondition: it stores a part.
+  void store(const Parcel<Motion>& parcel) {
     const std::vector<BodySlot> slots = engine().store(parcel);
-    for (std::size_t i = 0; i < slots.size(); ++i) part_->slots.add(parcel.numbers[i], slots[i]);
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      if (part_->slots.find(parcel.numbers[i]) != no_body) throw std::runtime_error("snapshot: a body is there twice");
+      part_->slots.add(parcel.numbers[i], slots[i]);
+    }
+  }
+  /// Adds those of a parcel, which are not here. Precondition: it stores a part.
+  void add(const Parcel<Motion>& parcel) {
+    store(parcel);
     const Attachments& attachments = whole_.bodies().attachments();
     if (attachments.empty()) return;
     for (const BodySlot number : parcel.numbers) {
@@ -82,9 +94,6 @@ class BodyStore {
     for (const BodySlot number : numbers) slots.push_back(find(number)), part_->slots.remove(number);
     engine().forget(slots);
   }
-  /// The whole world has all bodies again.
-  void end_part() { part_ = nullptr; }
-
   /// As Engine::note_passed().
   void note_passed(double t) {
     whole_.note_passed(t);

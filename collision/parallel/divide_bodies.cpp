@@ -163,7 +163,7 @@ void Domains<Motion>::send_bodies(Engine<Motion>& from, std::span<const BodySlot
   }
 }
 
-/// Each goes to the processes whose domains are to know one of the two: which are to know both is not known here.
+/// Each goes to the processes whose domains are to know one of the two, since which are to know both is not known here.
 template <class Motion>
 void Domains<Motion>::send_overlaps(Engine<Motion>& from, std::span<const BodySlot> answered,
                                     std::vector<Overlap> overlaps, double now) {
@@ -174,11 +174,19 @@ void Domains<Motion>::send_overlaps(Engine<Motion>& from, std::span<const BodySl
     const auto found = slots.find(from.bodies().number(slot));
     if (found != slots.end()) found->second = slot;
   }
+  const bool of_whole = &from == &store_.whole();
   NewsByProcess news;
   std::vector<DomainIndex> knowers;
   for (const Overlap& overlap : overlaps) {
     const BodySlot slot = slots[overlap.a] != no_body ? slots[overlap.a] : slots[overlap.b];
-    if (slot == no_body) continue;
+    if (slot == no_body) {
+      // Of one world all processes have all pairs. Of a part it is one of bodies that stand, known here and answered
+      // for elsewhere: no other process may have it.
+      for (std::size_t process = 0; process < team_.count() && !of_whole; ++process) {
+        if (process != team_.rank()) news[process].overlaps.push_back(overlap);
+      }
+      continue;
+    }
     assign_body(*division_, from.bodies(), from.scripts(), slot, now, knowers);
     each_process(knowers, [&](std::size_t process) { news[process].overlaps.push_back(overlap); });
   }
@@ -213,7 +221,7 @@ std::vector<typename Domains<Motion>::Overlap> Domains<Motion>::end() {
         overlaps_.insert(overlaps_.end(), heard.overlaps.begin(), heard.overlaps.end());
       });
     }
-    store_.end_part();
+    store_.put_part(nullptr);
     sort_overlaps();
   }
   division_.reset();

@@ -11,6 +11,7 @@
 #include "collision/parallel/step_outcome.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
+#include "kds/framework/snapshot.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -59,6 +60,17 @@ class Domains {
   std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
   /// There are no domains any more, and the world of each process has all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
+  /// There are no domains any more, and where the bodies are the caller will say.
+  void leave();
+
+  // saved_parts.cpp
+  using WriteBodies = std::function<void(std::vector<char>)>;
+  using ReadBodies = std::function<bool(std::vector<char>&)>;
+  /// As BasicParallelWorld::save_parts() where the bodies are not all in the whole world, or there are domains.
+  kds::Snapshot save(double now, const WriteBodies& write, std::size_t bodies_in_block);
+  /// As BasicParallelWorld::load_parts(), of a scene whose bodies are in parts: afterwards each process stores those
+  /// that it has read, as after add_shares(). Where it throws, all is as it was.
+  void load(const typename Engine<Motion>::Image& rest, const ReadBodies& read);
 
   /// In the window that begins next, a path may leave the chord between two of its places by this much.
   void set_bulge(double bulge) { division_->bulge = bulge; }
@@ -135,6 +147,11 @@ class Domains {
   std::vector<std::vector<Overlap>> overlaps_by_domain() const;
   void sort_overlaps();
   void drop();
+
+  // saved_parts.cpp
+  std::vector<BodySlot> with_attached(std::span<const BodySlot> slots) const;
+  bool answers_for_stored(BodySlot number) const;
+  void check_attached(BodySlot sensor, BodySlot owner) const;
 
   const WorldOptions options_;
   const std::size_t threads_;

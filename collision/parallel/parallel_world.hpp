@@ -5,12 +5,14 @@
 #include "collision/parallel/parallel_options.hpp"
 #include "collision/parallel/processes.hpp"
 #include "collision/world.hpp"
+#include "kds/framework/snapshot.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 namespace kds::collision {
 
@@ -88,9 +90,25 @@ class BasicParallelWorld final {
 
   /// Saves or loads the scene, as a World does: see save() and restore() in kds/framework/snapshot.hpp. What one of the
   /// two has saved the other can load, and it does not matter how many domains or processes there were. After loading
-  /// counters() begins at zero. Where several processes run the scene, all of them save and load.
+  /// counters() begins at zero. Where several processes run the scene, all of them save and load, and each has all
+  /// bodies in memory then; else save_parts().
   template <class Archive>
   void archive(Archive& archive);
+
+  using WriteBodies = std::function<void(std::vector<char>)>;
+  using ReadBodies = std::function<bool(std::vector<char>&)>;
+  /// Saves the scene without bringing its bodies together, and without ending the window: each process gives `write`
+  /// those that it answers for, in blocks. Returns the rest: in process 0, others get an empty one.
+  /// While the scene is one world there are no blocks, and the rest is all of it, as kds::save() of the World is. All
+  /// processes call it. Throws what `write` throws.
+  kds::Snapshot save_parts(const WriteBodies& write, std::size_t bodies_in_block = std::size_t{1} << 14);
+  /// Loads what save_parts() has saved, whatever the number of processes and domains, then and here. `rest`: the same
+  /// in all processes. `read` gives each of them some of the blocks, in any order, and false when it has had them all;
+  /// each block that was written is for one process. No process has all bodies in memory then, until the scene is run
+  /// as one world. counters() begins at zero. Throws, where there is something wrong in one of the processes, in all of
+  /// them, and all is as it was: what `read` throws; std::runtime_error for blocks that are damaged, missing, of
+  /// another scene, or there twice.
+  void load_parts(const kds::Snapshot& rest, const ReadBodies& read);
 
   double now() const;
   std::size_t size() const;

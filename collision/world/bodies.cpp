@@ -223,6 +223,15 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
 }
 
 template <class Motion>
+typename Bodies<Motion>::Image Bodies<Motion>::image_without_bodies() const {
+  Image image;
+  image.elsewhere = {.slots = lent_ > 0 ? lent_ : bodies_.size(), .bodies = alive_};
+  image.generations = generations_, image.free = free_;
+  image.ignored = ignored_.pairs(), image.attached = attachments_.all();
+  return image;
+}
+
+template <class Motion>
 typename Bodies<Motion>::Image Bodies<Motion>::image_of(std::span<const BodySlot> slots,
                                                         std::vector<std::shared_ptr<const Mesh>> meshes) const {
   Image image;
@@ -297,7 +306,7 @@ void Bodies<Motion>::become(const Image& image) {
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
   if constexpr (turns<Motion>) motions_.resize(count);
-  alive_ = 0;
+  lent_ = image.elsewhere.slots, alive_ = image.elsewhere.bodies;
   ignored_.clear(), attachments_.clear();
   for (const auto& [a, b] : image.ignored) ignore(a, b, true);
   for (const auto& [sensor, owner] : image.attached) attach(sensor, owner);

@@ -250,6 +250,8 @@ class Bodies {
   /// The whole state as plain data, for snapshots.
   struct Image;
   Image image() const;
+  /// The same with how many they are in place of the bodies; also where they are lent.
+  Image image_without_bodies() const;
   /// Bodies in this order, without what there is between them. `meshes`: all that they may have.
   Image image_of(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
   /// Adds the body in this place of such an image, as it was: with a number, or in an empty slot that is its number.

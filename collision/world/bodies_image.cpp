@@ -77,6 +77,7 @@ template <class Motion>
 template <class Archive>
 void Bodies<Motion>::Image::archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
+  archive(elsewhere.slots, elsewhere.bodies, elsewhere.numbers);
   archive_bodies(archive);
   archive(generations, free, waiting);
   archive.each(ignored, [&](auto& pair) { archive(pair.first, pair.second); });
@@ -103,34 +104,66 @@ bool Bodies<Motion>::Image::may_collide(BodySlot a, BodySlot b) const {
          !std::binary_search(ignored.begin(), ignored.end(), IgnoredPairs::pair(a, b));
 }
 
-/// Also the pairs that are ignored.
+/// Free slots, and generations.
 template <class Motion>
-void Bodies<Motion>::Image::check_attached() const {
+void Bodies<Motion>::Image::check_free() const {
+  const std::size_t slots = lent() ? elsewhere.slots : bodies.size();
+  if (slots > no_body) image::fail("bodies: there are more than there are slots");
+  if (generations.size() > slots) image::fail("generations: there are more than there are slots");
+  std::vector<char> listed(generations.size());
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    const BodySlot slot = free[i];
+    image::require(slot < slots && !alive(slot), "free", i, "is no free slot, or listed twice");
+    image::require(generation(slot) > 0, "free", i, "is of a slot from which no body was removed");
+    image::require(!std::exchange(listed[slot], 1), "free", i, "is no free slot, or listed twice");
+  }
+  for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
+    const bool is_listed = slot < listed.size() && listed[slot] != 0;
+    const bool retired = generation(slot) == last_generation;
+    image::require(bodies[slot].alive || is_listed || retired, "bodies", slot, "its slot is free, and not listed");
+  }
+  if (!lent()) return;
+  if (elsewhere.bodies > slots - free.size()) image::fail("bodies: more are elsewhere than have slots");
+  // The other slots are retired, and so have generations.
+  if (slots - free.size() - elsewhere.bodies > generations.size()) image::fail("bodies: there are slots of none");
+  if (!bodies.empty() || !waiting.empty()) image::fail("bodies: they are elsewhere, and here");
+}
+
+/// Pairs that are ignored, and that are attached; those of bodies that are elsewhere, as far as can be seen here.
+template <class Motion>
+void Bodies<Motion>::Image::check_related() const {
+  const auto known = [this](BodySlot slot) { return lent() ? slot < elsewhere.slots : alive(slot); };
   for (std::size_t i = 0; i < ignored.size(); ++i) {
     const auto [a, b] = ignored[i];
-    image::require(a < b && alive(a) && alive(b), "ignored", i, "is not of two bodies");
+    image::require(a < b && known(a) && known(b), "ignored", i, "is not of two bodies");
     image::require(i == 0 || ignored[i - 1] < ignored[i], "ignored", i, "is out of order, or there twice");
   }
   for (std::size_t i = 0; i < attached.size(); ++i) {
     const auto [sensor, its_owner] = attached[i];
-    image::require(alive(sensor) && alive(its_owner) && bodies[sensor].sensor, "attached", i, "is no sensor of a body");
+    image::require(known(sensor) && known(its_owner), "attached", i, "is not of two bodies");
     image::require(i == 0 || attached[i - 1].first < sensor, "attached", i, "is out of order, or there twice");
-    image::require(!bodies[sensor].entered || bodies[its_owner].entered, "attached", i, "has entered before its body");
   }
   for (std::size_t i = 0; i < attached.size(); ++i) {
     image::require(owner(attached[i].second) == no_body, "attached", i, "is of a body that is attached itself");
+    if (!lent()) check_attached(attached[i].first, bodies[attached[i].first], bodies[attached[i].second]);
   }
 }
 
 template <class Motion>
+void Bodies<Motion>::Image::check_attached(BodySlot slot, const One& sensor, const One& its_owner) {
+  image::require(sensor.sensor, "bodies", slot, "is attached, and no sensor");
+  image::require(!sensor.entered || its_owner.entered, "bodies", slot,
+                 "has entered before that to which it is attached");
+}
+
+template <class Motion>
 void Bodies<Motion>::Image::check(double now) const {
-  if (bodies.size() > no_body) image::fail("bodies: there are more than there are slots");
-  if (generations.size() > bodies.size()) image::fail("generations: there are more than there are slots");
+  check_free();
   for (std::size_t i = 0; i < waiting.size(); ++i) {
     image::require(alive(waiting[i]) && !bodies[waiting[i]].entered, "waiting", i, "is no body that waits to enter");
     image::require(path_of(bodies[waiting[i]].motion).start <= now, "waiting", i, "its motion begins after now");
   }
-  check_attached();
+  check_related();
   for (std::size_t slot = 0; slot < bodies.size(); ++slot) {
     const One& body = bodies[slot];
     const auto need = [slot](bool right, const char* what) { image::require(right, "bodies", slot, what); };
@@ -151,17 +184,6 @@ void Bodies<Motion>::Image::check(double now) const {
     need(body.rolling_friction >= 0 && body.rolling_friction <= largest_magnitude,
          "its rolling friction is not in [0, 2^205]");
     if constexpr (Motion::degree >= 3) need(body.given.finite(), "the motion that it was given is not finite");
-  }
-  std::vector<char> listed(bodies.size());
-  for (std::size_t i = 0; i < free.size(); ++i) {
-    const BodySlot slot = free[i];
-    image::require(slot < bodies.size() && !bodies[slot].alive && !std::exchange(listed[slot], 1), "free", i,
-                   "is no free slot, or listed twice");
-    image::require(generation(slot) > 0, "free", i, "is of a slot from which no body was removed");
-  }
-  for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
-    const bool retired = generation(slot) == last_generation;
-    image::require(bodies[slot].alive || listed[slot] || retired, "bodies", slot, "its slot is free, and not listed");
   }
 }
 

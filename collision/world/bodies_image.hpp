@@ -12,6 +12,13 @@
 
 namespace kds::collision {
 
+/// Numbers of bodies scattered over all of 64 bits: the sums of these tell sets of numbers apart.
+inline std::uint64_t number_hash(BodySlot number) {
+  std::uint64_t hash = (std::uint64_t{number} + 1) * 0x9e3779b97f4a7c15u;
+  hash = (hash ^ hash >> 32) * 0xbf58476d1ce4e5b9u;
+  return hash ^ hash >> 29;
+}
+
 template <class Motion>
 struct Bodies<Motion>::Image {
   struct One {
@@ -35,13 +42,21 @@ struct Bodies<Motion>::Image {
     Path given{};  ///< of degree 3 and above, in place of the force
   };
 
+  /// Of bodies that are saved elsewhere: how many slots there are, how many bodies in them, and `number_hash` of the
+  /// slots of these, added up.
+  struct Lent {
+    std::uint64_t slots = 0, bodies = 0, numbers = 0;
+  };
+
   std::vector<std::shared_ptr<const Mesh>> meshes;
+  Lent elsewhere{};         ///< then there are none here, and none waits
   std::vector<One> bodies;  // by slot
   std::vector<std::uint32_t> generations;
   std::vector<BodySlot> free, waiting;
   std::vector<std::pair<BodySlot, BodySlot>> ignored;   ///< lower slot first, in order
   std::vector<std::pair<BodySlot, BodySlot>> attached;  ///< sensor and owner, in order
 
+  bool lent() const { return elsewhere.slots > 0; }
   bool alive(BodySlot slot) const { return slot < bodies.size() && bodies[slot].alive; }
   bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
   std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
@@ -68,9 +83,12 @@ struct Bodies<Motion>::Image {
 
   /// Throws std::runtime_error, naming what is wrong. Precondition: shapes have been loaded, so that meshes are there.
   void check(double now) const;
+  /// The same of a body, in this slot, and one to which it is attached.
+  static void check_attached(BodySlot slot, const One& sensor, const One& its_owner);
 
  private:
-  void check_attached() const;
+  void check_free() const;
+  void check_related() const;
   template <class Archive>
   static void mesh(Archive& archive, std::shared_ptr<const Mesh>& mesh,
                    const std::vector<std::shared_ptr<const Mesh>>& known);

@@ -106,6 +106,15 @@ class Engine final : private RestingListener<BodyMotionType> {
   void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
   void visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const;
 
+  // snapshot.cpp
+  struct Image;  // engine_image.hpp
+  Image image() const;
+  /// The same at t, but for the bodies, which are saved elsewhere; others may have them.
+  Image image_without_bodies(double t) const;
+  /// Writes an image, or reads and checks one that this can become. Throws as BasicWorld::archive().
+  template <class Archive>
+  void archive(Archive& archive, Image& image) const;
+  void become(const Image& image);
   template <class Archive>
   void archive(Archive& archive);
 
@@ -141,24 +150,21 @@ class Engine final : private RestingListener<BodyMotionType> {
   void note_meeting(BodySlot slot) { resting_.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
   bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
-  // Worlds of which each has a part of the bodies, and that only store them.
-  /// Bodies as plain data. `meshes`: all that there are in the scene.
+  /// Of worlds that only store bodies, each a part. As plain data; `meshes`: all that there are in the scene.
   Parcel<Motion> pack(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
-  /// Stores those of a parcel, with their numbers. Returns the slots, in the same order. Those that are attached
-  /// to others are still to be attached.
+  /// Stores those of a parcel, with their numbers; attach() follows. Returns the slots, in the same order.
   std::vector<BodySlot> store(const Parcel<Motion>& parcel);
   void attach(BodySlot sensor, BodySlot owner) { bodies_.attach(sensor, owner); }
   /// Forgets bodies that have been stored.
   void forget(std::span<const BodySlot> slots);
   /// Bodies that have been added have these numbers, from the first on.
   void number_from(BodySlot first) { bodies_.number_from(first); }
-  /// Others store the bodies of this world, all that there is of them, and it forgets them until take_back(); then they
-  /// are put_back() one by one, and it is whole with go_on(). `bodies`: of so many that have been added elsewhere.
+  /// Others store the bodies of this world, and it forgets them until take_back(); then they are put_back() one by one,
+  /// and it is whole with go_on(). `bodies`: of so many that have been added elsewhere.
   void lend();
   void lend(std::size_t bodies) { bodies_.lend(bodies); }
   void take_back() { bodies_.take_back(); }
   void put_back(const Parcel<Motion>& parcel);
-
   /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Timers have rung.
   void note_passed(double t);
   /// Forgets all but the bodies, until go_on().
@@ -308,9 +314,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>);
   bool stays(double rebound, double pressed, double size, std::uint64_t burst) const;
   bool endless(std::uint64_t burst) const;
-
   void bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
-
   // bending_bounces.cpp: of meshes that bend
   bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
   bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
@@ -353,11 +357,6 @@ class Engine final : private RestingListener<BodyMotionType> {
   // near.cpp: queries
   template <class Ask, class Meets>
   void answer(const char* function, const Ask& ask, const Meets& meets, BodyVisitor visit) const;
-
-  // snapshot.cpp
-  struct Image;
-  Image image() const;
-  void become(const Image& image);
 
   Profile* profile() { return options_.profile ? &profile_ : nullptr; }
 

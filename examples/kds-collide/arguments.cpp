@@ -110,6 +110,11 @@ bool pictures(const Arguments& arguments) {
   return !arguments.view.empty() || !arguments.gltf.empty() || !arguments.vtk.empty();
 }
 
+/// Whether a file is, or would be, one of those of bodies that belong to a checkpoint.
+bool is_of_checkpoint(const std::filesystem::path& path, const std::string& checkpoint) {
+  return is_part_of(path, checkpoint + ".a") || is_part_of(path, checkpoint + ".b");
+}
+
 void check_checkpoints(const Arguments& arguments) {
   const double every = arguments.run.checkpoint_every;
   if (arguments.checkpoint.empty()) {
@@ -125,6 +130,14 @@ void check_checkpoints(const Arguments& arguments) {
   }
   for (const std::string& file : {arguments.checkpoint, arguments.events}) {
     if (file == "-") throw ArgumentError("--checkpoint: the checkpoint and the events must be files");
+  }
+  for (const auto& [option, path] : outputs(arguments)) {
+    if (is_of_checkpoint(path, arguments.checkpoint)) {
+      throw ArgumentError(std::string(option) + ": is a part of the checkpoint");
+    }
+  }
+  if (is_of_checkpoint(arguments.scene, arguments.checkpoint)) {
+    throw ArgumentError("--checkpoint: the scene would be a part of it");
   }
 }
 

@@ -153,6 +153,10 @@ class Simulation {
   Simulation& operator=(const Simulation&) = delete;
 
   void run() {
+    if (!arguments_.checkpoint.empty()) {
+      const std::optional<std::uint64_t> turn = arguments_.resume ? std::optional(checkpoint_.turn) : std::nullopt;
+      checkpoints_.emplace(arguments_.checkpoint, team_, turn);
+    }
     result_ = kds::io::run(scene_, arguments_.run, sinks_);
     progress_.reset();
   }
@@ -203,15 +207,19 @@ class Simulation {
         throw ArgumentError("--resume: give --events if, and only if, the run had it");
       }
       arguments_.run.resume = &checkpoint_.world;
+      if (!checkpoint_.bodies.empty()) {
+        bodies_.emplace(arguments_.checkpoint, checkpoint_, team_.rank(), team_.count()).check();
+        arguments_.run.resume_bodies = [this](std::vector<char>& block) { return bodies_->read(block); };
+      }
     }
     checkpoint_.scene = scene;
+    arguments_.run.checkpoint_bodies = [this](const std::vector<char>& block) { checkpoints_->write_bodies(block); };
     arguments_.run.checkpoint = [this](const kds::Snapshot& world) {
       auto parts = parts_ ? parts_->places() : std::vector<PartPlace>();
-      if (team_.rank() > 0) return;
-      write_checkpoint(arguments_.checkpoint, {.scene = checkpoint_.scene,
-                                               .events = events_ ? events_->flush() : 0,
-                                               .parts = std::move(parts),
-                                               .world = world});
+      checkpoints_->commit({.scene = checkpoint_.scene,
+                            .events = events_ ? events_->flush() : 0,
+                            .parts = std::move(parts),
+                            .world = world});
     };
   }
 
@@ -229,6 +237,8 @@ class Simulation {
   Arguments arguments_;
   kds::collision::Team& team_;
   Checkpoint checkpoint_;  ///< from which the run goes on, if it does
+  std::optional<CheckpointReader> bodies_;
+  std::optional<CheckpointWriter> checkpoints_;
   double read_seconds_ = 0;
   Scene scene_;
   EventSinks sinks_;

@@ -11,38 +11,64 @@ namespace kds::io {
 namespace {
 
 /// What is not the content of a block: its head and its checksum.
-constexpr std::uint64_t around = 3 * sizeof(std::uint64_t);
+constexpr std::uint64_t head_size = 2 * sizeof(std::uint64_t);
+constexpr std::uint64_t around = head_size + sizeof(std::uint64_t);
 
 }  // namespace
 
-BlockFile::BlockFile(std::filesystem::path path) : path_(std::move(path)) {
+void write_block(OutputFile& file, std::uint64_t& chain, BlockKind kind, std::string_view content) {
+  const std::uint64_t head[2] = {static_cast<std::uint64_t>(kind), content.size()};
+  char letters[sizeof head], checksum[sizeof chain];
+  std::memcpy(letters, head, sizeof head);
+  chain = chained(chained(chain, {letters, sizeof letters}), content);
+  std::memcpy(checksum, &chain, sizeof chain);
+  file.write({letters, sizeof letters});
+  file.write(content);
+  file.write({checksum, sizeof checksum});
+}
+
+BlockFile::BlockFile(std::filesystem::path path, const BlockFormat& format)
+    : path_(std::move(path)), what_(format.what) {
   std::error_code error;
   size_ = std::filesystem::file_size(path_, error);
   if (error) throw SceneError(path_.string(), "file", "cannot be read: " + error.message());
-  std::string magic(std::min<std::uint64_t>(size_, part_magic.size()), '\0');
+  std::string magic(std::min<std::uint64_t>(size_, format.magic.size()), '\0');
   read(magic.data(), magic.size(), 0);
-  if (magic != part_magic) refuse("is none, or is of another version");
+  if (magic != format.magic) refuse("is none, or is of another version");
   at_ = magic.size();
 }
 
-BlockKind BlockFile::next(std::string& content) {
+/// The length of the content of the next block, whose head is read.
+std::uint64_t BlockFile::next_length(char* head) const {
   if (at_end()) refuse("ends before the run: it has not ended, or this has been cut");
   if (size_ - at_ < around) refuse("has been cut");
-  std::uint64_t head[2], checksum = 0;
-  char letters[sizeof head];
-  read(letters, sizeof head, at_);
-  std::memcpy(head, letters, sizeof head);
-  if (head[1] > size_ - at_ - around) refuse("has been cut, or is damaged");
-  content.resize(head[1]);
-  read(content.data(), head[1], at_ + sizeof head);
-  char last[sizeof checksum];
-  read(last, sizeof last, at_ + sizeof head + head[1]);
+  read(head, head_size, at_);
+  std::uint64_t length = 0;
+  std::memcpy(&length, head + sizeof length, sizeof length);
+  if (length > size_ - at_ - around) refuse("has been cut, or is damaged");
+  return length;
+}
+
+BlockKind BlockFile::next(std::string& content) {
+  char head[head_size], last[sizeof(std::uint64_t)];
+  const std::uint64_t length = next_length(head);
+  content.resize(length);
+  read(content.data(), length, at_ + sizeof head);
+  read(last, sizeof last, at_ + sizeof head + length);
+  std::uint64_t checksum = 0, kind = 0;
   std::memcpy(&checksum, last, sizeof checksum);
-  chain_ = chained(chained(chain_, {letters, sizeof head}), content);
-  const auto kind = static_cast<BlockKind>(head[0]);
-  if (checksum != chain_ || kind > BlockKind::end) refuse("is damaged");
-  at_ += around + head[1];
-  return kind;
+  std::memcpy(&kind, head, sizeof kind);
+  chain_ = chained(chained(chain_, {head, sizeof head}), content);
+  if (checksum != chain_ || kind > static_cast<std::uint64_t>(BlockKind::bodies)) refuse("is damaged");
+  at_ += around + length;
+  return static_cast<BlockKind>(kind);
+}
+
+void BlockFile::skip() {
+  char head[head_size], last[sizeof chain_];
+  at_ += around + next_length(head);
+  read(last, sizeof last, at_ - sizeof last);
+  std::memcpy(&chain_, last, sizeof chain_);
 }
 
 void BlockFile::read(char* to, std::uint64_t size, std::uint64_t at) const {
@@ -53,6 +79,6 @@ void BlockFile::read(char* to, std::uint64_t size, std::uint64_t at) const {
   }
 }
 
-void BlockFile::refuse(const std::string& what) const { throw SceneError(path_.string(), "part of events", what); }
+void BlockFile::refuse(const std::string& what) const { throw SceneError(path_.string(), what_, what); }
 
 }  // namespace kds::io

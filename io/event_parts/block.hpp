@@ -1,5 +1,7 @@
-// The blocks that a part of the events is made of.
+// The blocks that the files of several processes are made of: parts of the events, and of checkpoints.
 #pragma once
+
+#include "io/output_file.hpp"
 
 #include <cstdint>
 #include <cstring>
@@ -15,13 +17,19 @@ enum class BlockKind : std::uint64_t {
   /// The number of the step in the section, of domains, of the first of these logs and of logs; of each log its length
   /// in bytes, and its records.
   step,
-  end  ///< of the run; nothing follows
+  end,    ///< of the run; nothing follows
+  bodies  ///< of a checkpoint: as BasicParallelWorld::save_parts() gives them
 };
 
-/// A part begins with this, and then come blocks. Each is its kind, its length in bytes, both in eight bytes, its
-/// content, and a checksum of all that, which begins with the checksum of the block before; so a block that is missing,
-/// or in another place, is noticed as one that is damaged. Numbers are as the machine has them.
-inline constexpr std::string_view part_magic = "KDSPART1";
+/// What a file is; it begins with the magic, and then come blocks. Each is its kind, its length in bytes, both in eight
+/// bytes, its content, and a checksum of all that, which begins with the checksum of the block before; so a block that
+/// is missing, or in another place, is noticed as one that is damaged. Numbers are as the machine has them.
+struct BlockFormat {
+  std::string_view magic;
+  const char* what;
+};
+inline constexpr BlockFormat part_of_events{"KDSPART1", "part of events"};
+inline constexpr BlockFormat part_of_checkpoint{"KDSBODY1", "part of a checkpoint"};
 inline constexpr std::uint64_t first_chain = 0x9e3779b97f4a7c15;
 
 /// How a section begins. `run` is a random number, the same in the parts of all processes.
@@ -35,8 +43,8 @@ struct SectionHead {
 };
 
 /// Of a sequence of bytes after others. Each word changes it by a bijection, so damage within a word is always noticed.
-/// By words, not by bytes as the checksum of snapshots: 0.2 ns a byte in place of 1.2, which for the 65 bytes of an event
-/// is more than all else that reading it takes.
+/// By words, not by bytes as the checksum of snapshots: 0.2 ns a byte in place of 1.2, which for the 65 bytes of an
+/// event is more than all else that reading it takes.
 inline std::uint64_t chained(std::uint64_t before, std::string_view bytes) {
   const auto with = [&before](std::uint64_t word) {
     before = (before ^ word) * 0xbf58476d1ce4e5b9u;
@@ -53,23 +61,32 @@ inline std::uint64_t chained(std::uint64_t before, std::string_view bytes) {
   return before;
 }
 
-/// Reads the blocks of a part. The file is open only while a block is read: there may be more parts than files that a
+/// Writes a block; `chain`: the checksum of the one before it, and then of this one.
+void write_block(OutputFile& file, std::uint64_t& chain, BlockKind kind, std::string_view content);
+
+/// Reads the blocks of a file. The file is open only while a block is read: there may be more parts than files that a
 /// process may have open.
 class BlockFile {
  public:
-  /// Throws SceneError if it cannot be read, or is no part.
-  explicit BlockFile(std::filesystem::path path);
-  const std::filesystem::path& path() const { return path_; }
+  /// Throws SceneError if it cannot be read, or is no such file.
+  BlockFile(std::filesystem::path path, const BlockFormat& format);
+  std::uint64_t size() const { return size_; }
+  /// The checksum of the last block that was read or passed over.
+  std::uint64_t chain() const { return chain_; }
   /// The kind of the next block, and its content. Throws SceneError if there is none, or it is damaged.
   BlockKind next(std::string& content);
+  /// Passes over the next block, whose content may be damaged.
+  void skip();
   bool at_end() const { return at_ == size_; }
   /// Throws SceneError: of this file, that it ...
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
+  std::uint64_t next_length(char* head) const;
   void read(char* to, std::uint64_t size, std::uint64_t at) const;
 
   std::filesystem::path path_;
+  const char* what_;
   std::uint64_t size_ = 0;
   std::uint64_t at_ = 0;
   std::uint64_t chain_ = first_chain;

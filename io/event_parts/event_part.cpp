@@ -44,13 +44,13 @@ const std::string& checked(const std::string& path, const PartPlace& from) {
 std::string part_path(const std::string& file, std::size_t rank) { return file + '.' + std::to_string(rank); }
 
 EventPart::EventPart(const std::string& path, const PartOf& of) : file_(path), chain_(first_chain) {
-  file_.write(part_magic);
+  file_.write(part_of_events.magic);
   begin(of);
 }
 
 EventPart::EventPart(const std::string& path, const PartOf& of, const PartPlace& from)
     : file_(checked(path, from), from.bytes), chain_(from.bytes > 0 ? from.chain : first_chain) {
-  if (from.bytes == 0) file_.write(part_magic);
+  if (from.bytes == 0) file_.write(part_of_events.magic);
   begin(of);
 }
 
@@ -90,15 +90,7 @@ void EventPart::write_events() {
   records_.clear();
 }
 
-void EventPart::write(BlockKind kind, const std::string& content) {
-  std::string head, checksum;
-  append_bytes(head, static_cast<std::uint64_t>(kind)), append_bytes(head, std::uint64_t{content.size()});
-  chain_ = chained(chained(chain_, head), content);
-  append_bytes(checksum, chain_);
-  for (const std::string_view bytes : {std::string_view(head), std::string_view(content), std::string_view(checksum)}) {
-    file_.write(bytes);
-  }
-}
+void EventPart::write(BlockKind kind, const std::string& content) { write_block(file_, chain_, kind, content); }
 
 PartPlace EventPart::flush() {
   write_events();

@@ -117,7 +117,8 @@ EventParts::EventParts(std::string file, std::uint64_t scene, std::size_t bodies
 EventParts::~EventParts() = default;
 
 BlockFile& EventParts::part(std::size_t rank) {
-  while (parts_.size() <= rank) parts_.push_back(std::make_unique<BlockFile>(part_path(file_, parts_.size())));
+  while (parts_.size() <= rank)
+    parts_.push_back(std::make_unique<BlockFile>(part_path(file_, parts_.size()), part_of_events));
   return *parts_[rank];
 }
 

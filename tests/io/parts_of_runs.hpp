@@ -11,8 +11,10 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::io::tests {
@@ -88,6 +90,7 @@ inline constexpr std::uint64_t scene_number = 77;
 struct Progress {
   kds::Snapshot world{};
   std::vector<PartPlace> parts{};
+  std::vector<std::vector<char>> bodies{};
 };
 
 struct Ended : std::runtime_error {
@@ -100,6 +103,8 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
                            Progress* progress = nullptr) {
   RunResult result;
   const Progress before = progress ? *progress : Progress();
+  std::mutex mutex;
+  std::vector<std::vector<char>> bodies;  // of the next checkpoint
   const auto work = [&](kds::collision::Processes& processes) {
     kds::collision::Team team(&processes);
     const PartOf of{.scene = scene_number, .bodies = scene.bodies.size(), .run = options.run};
@@ -110,11 +115,24 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
     run_options.domains = options.domains, run_options.processes = &processes, run_options.steps = &parts.own();
     run_options.rate = options.rate, run_options.checkpoint_every = options.checkpoint_every;
     if (!before.parts.empty()) run_options.resume = &before.world;
+    if (!before.bodies.empty()) {
+      run_options.resume_bodies = [&, next = team.rank()](std::vector<char>& block) mutable {
+        if (next >= before.bodies.size()) return false;
+        block = before.bodies[next];
+        next += team.count();
+        return true;
+      };
+    }
+    run_options.checkpoint_bodies = [&](std::vector<char> block) {
+      const std::scoped_lock lock(mutex);
+      bodies.push_back(std::move(block));
+    };
     std::size_t checkpoints = 0;
     run_options.checkpoint = [&](const kds::Snapshot& world) {
       if (options.ends_at > 0 && checkpoints++ == options.ends_at) throw Ended();
       auto places = parts.places();
-      if (team.rank() == 0) *progress = {world, std::move(places)};
+      const std::scoped_lock lock(mutex);
+      if (team.rank() == 0) *progress = {world, std::move(places), std::exchange(bodies, {})};
     };
     const RunResult mine = run(scene, run_options, sinks);
     parts.close();

@@ -2,12 +2,18 @@
 #include "io/event_csv.hpp"
 #include "io/run.hpp"
 #include "io/scene_reader.hpp"
+#include "tests/collision/parallel/thread_processes.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/throws.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace test_checkpoint {
@@ -69,6 +75,11 @@ struct State {
   std::size_t events;
 };
 
+struct InBlocks {
+  State state;
+  std::vector<std::vector<char>> blocks;
+};
+
 }  // namespace
 
 TEST_CASE("checkpoint: a run that goes on from one has the events of the run that went through") {
@@ -86,6 +97,7 @@ TEST_CASE("checkpoint: a run that goes on from one has the events of the run tha
   run(scene, options, lines);
   CHECK(lines.text == through.text);
   REQUIRE(states.size() == 7);
+  int seen_in_blocks = 0;
   for (const State& state : states) {
     RunOptions on = options;
     on.checkpoint = [](const kds::Snapshot&) {};
@@ -97,10 +109,31 @@ TEST_CASE("checkpoint: a run that goes on from one has the events of the run tha
     CHECK(result.sim_seconds < 3);
     if (turning) continue;
     on.domains = 3;
+    std::vector<std::vector<char>> blocks;
+    std::vector<InBlocks> in_blocks;
     Lines divided(scene);
+    on.checkpoint_bodies = [&](std::vector<char> block) { blocks.push_back(std::move(block)); };
+    on.checkpoint = [&](const kds::Snapshot& world) {
+      in_blocks.push_back({{world, divided.text.size()}, std::exchange(blocks, {})});
+    };
     run(scene, on, divided);
     CHECK(divided.text == rest.text);
+    for (const InBlocks& from : in_blocks) {
+      if (from.blocks.empty()) continue;  // It was one world.
+      ++seen_in_blocks;
+      RunOptions last;
+      last.resume = &from.state.world;
+      last.resume_bodies = [&, next = from.blocks.begin()](std::vector<char>& block) mutable {
+        if (next == from.blocks.end()) return false;
+        block = *next++;
+        return true;
+      };
+      Lines later(scene);
+      run(scene, last, later);
+      CHECK(later.text == divided.text.substr(from.state.events));
+    }
   }
+  if (!turning) CHECK(seen_in_blocks > 0);
 }
 
 TEST_CASE("checkpoint: of another scene, or other options, it is refused") {
@@ -121,6 +154,8 @@ TEST_CASE("checkpoint: of another scene, or other options, it is refused") {
   RunOptions other = options;
   other.broad_phase = "grid";
   CHECK_NOTHROW(run(scene, other, none));
+  other.domains = 3;
+  CHECK_THROWS_WITH(run(scene, other, none), "RunOptions.checkpoint_bodies: is needed in a scene that is divided");
 }
 
 TEST_CASE("checkpoint: a file has what was written, and one that is damaged is refused") {
@@ -128,7 +163,8 @@ TEST_CASE("checkpoint: a file has what was written, and one that is damaged is r
   const auto file = folder / "run.state";
   Number number;
   const Checkpoint written{.scene = 12, .events = 345, .world = kds::save(number)};
-  write_checkpoint(file, written);
+  kds::collision::Team alone(nullptr);
+  CheckpointWriter(file, alone).commit(written);
   const Checkpoint read = read_checkpoint(file);
   CHECK(read.scene == 12);
   CHECK(read.events == 345);
@@ -146,6 +182,136 @@ TEST_CASE("checkpoint: a file has what was written, and one that is damaged is r
                     damaged + ": checkpoint: snapshot: this is none, or is from another kind of machine");
   const std::string missing = (folder / "none").string();
   CHECK_THROWS_WITH(read_checkpoint(missing), missing + ": file: cannot be read: No such file or directory");
+}
+
+namespace {
+
+using Blocks = std::vector<std::string>;
+
+/// What each process reads, in the order of the processes.
+Blocks read_blocks(const std::filesystem::path& file, std::size_t processes) {
+  const Checkpoint checkpoint = read_checkpoint(file);
+  Blocks all;
+  for (std::size_t rank = 0; rank < processes; ++rank) {
+    CheckpointReader reader(file, checkpoint, rank, processes);
+    reader.check();
+    for (std::vector<char> block; reader.read(block);) all.emplace_back(block.begin(), block.end());
+  }
+  return all;
+}
+
+/// A checkpoint of several processes, of which each writes its number and more.
+void write_parts(CheckpointWriter& writer, std::size_t rank, std::size_t blocks, const std::string& what) {
+  for (std::size_t i = 0; i < blocks; ++i) {
+    const std::string block = what + std::to_string(rank) + "." + std::to_string(i);
+    writer.write_bodies({block.begin(), block.end()});
+  }
+}
+
+std::vector<std::string> files_in(const TemporaryFolder& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+void write_by(std::size_t processes, const std::filesystem::path& file, std::size_t times, const std::string& what) {
+  kds::collision::tests::ThreadProcesses(processes).run([&](kds::collision::Processes& others) {
+    kds::collision::Team team(&others);
+    CheckpointWriter writer(file, team);
+    for (std::size_t k = 0; k < times; ++k) {
+      write_parts(writer, team.rank(), 1 + team.rank() % 3, what + std::to_string(k) + "-");
+      writer.commit({.scene = 7});
+    }
+  });
+}
+
+}  // namespace
+
+TEST_CASE("checkpoint: files of bodies are read by any number of processes, and replaced by those of the next one") {
+  const TemporaryFolder folder;
+  const auto file = folder / "run.state";
+  write_by(4, file, 2, "x");
+  Blocks right{"x1-0.0", "x1-1.0", "x1-1.1", "x1-2.0", "x1-2.1", "x1-2.2", "x1-3.0"};
+  for (const std::size_t processes : {1u, 2u, 3u, 9u}) {
+    Blocks read = read_blocks(file, processes);
+    std::sort(read.begin(), read.end());
+    CHECK(read == right);
+  }
+  CHECK(read_checkpoint(file).scene == 7);
+  CHECK(files_in(folder) == Blocks{"run.state", "run.state.b.0", "run.state.b.1", "run.state.b.2", "run.state.b.3"});
+  write_by(2, file, 1, "y");
+  CHECK(files_in(folder) == Blocks{"run.state", "run.state.a.0", "run.state.a.1"});
+  CHECK(read_blocks(file, 1) == Blocks{"y0-0.0", "y0-1.0", "y0-1.1"});
+  // One with all in it has no files beside it.
+  kds::collision::Team alone(nullptr);
+  CheckpointWriter(file, alone).commit({.scene = 8});
+  CHECK(files_in(folder) == Blocks{"run.state"});
+  CHECK(read_blocks(file, 2).empty());
+}
+
+TEST_CASE("checkpoint: a process that ends while one is written leaves the one before whole") {
+  const TemporaryFolder folder;
+  const auto file = folder / "run.state";
+  write_by(2, file, 1, "x");
+  const Blocks before = read_blocks(file, 1);
+  const Blocks files = files_in(folder);
+  {  // Some bodies are written.
+    kds::collision::Team alone(nullptr);
+    CheckpointWriter writer(file, alone);
+    write_parts(writer, 0, 3, "never");
+    CHECK(read_blocks(file, 1) == before);
+  }
+  CHECK(files_in(folder) == files);
+  // All bodies are there, of three processes, and the file that would name them is not.
+  folder.write("other.state", read_file(file));
+  const auto other = folder / "other.state";
+  write_by(3, other, 1, "late");
+  for (int rank = 0; rank < 3; ++rank) {
+    const std::string part = ".b." + std::to_string(rank);
+    folder.write("run.state" + part, read_file(other.string() + part));
+  }
+  CHECK(read_blocks(file, 1) == before);
+  // The next one, of fewer processes, leaves nothing of them.
+  write_by(2, file, 1, "z");
+  CHECK(read_blocks(file, 1) == Blocks{"z0-0.0", "z0-1.0", "z0-1.1"});
+  CHECK_FALSE(std::filesystem::exists(file.string() + ".b.2"));
+  CHECK_FALSE(std::filesystem::exists(file.string() + ".a.0"));
+}
+
+TEST_CASE(
+    "checkpoint: files of bodies that are missing, cut, damaged or of another checkpoint are refused, and named") {
+  const TemporaryFolder folder;
+  const auto file = folder / "run.state", other = folder / "other.state";
+  write_by(2, file, 1, "x");
+  write_by(2, other, 1, "y");
+  const auto refused = [&](const std::string& what) {
+    const std::string part = file.string() + ".a.1: ";
+    kds::tests::throws<SceneError>([&] { read_blocks(file, 1); }, part + what);
+  };
+  const std::string part = read_file(file.string() + ".a.1");
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    std::string damaged = part;
+    damaged[i] = static_cast<char>(damaged[i] ^ 4);
+    folder.write("run.state.a.1", damaged);
+    CHECK_THROWS_AS(read_blocks(file, 1), SceneError);
+    CHECK_THROWS_AS(read_blocks(file, 3), SceneError);
+    folder.write("run.state.a.1", part.substr(0, i));
+    refused("part of a checkpoint: ");
+  }
+  std::string damaged = part;
+  damaged[part.size() - 10] = '?';
+  folder.write("run.state.a.1", damaged);
+  refused("part of a checkpoint: is damaged");
+  folder.write("run.state.a.1", read_file(other.string() + ".a.1"));
+  refused("part of a checkpoint: is of another checkpoint");
+  folder.write("run.state.a.1", part + "more");
+  refused("part of a checkpoint: has " + std::to_string(part.size() + 4) + " bytes, and there were " +
+          std::to_string(part.size()) + ": it has been cut, or is of another checkpoint");
+  std::filesystem::remove(file.string() + ".a.1");
+  refused("file: cannot be read: No such file or directory");
 }
 
 TEST_CASE("checkpoint: the fingerprint is that of the file") {

@@ -15,6 +15,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace test_scene_share {
@@ -152,6 +153,7 @@ TEST_CASE("share of a scene: runs of shares have the events of the scene, and go
   CHECK(std::count(right.text.begin(), right.text.end(), '\n') > 10);
   for (const bool resumes : {false, true}) {
     kds::Snapshot half;
+    std::vector<std::vector<char>> coming, blocks;
     Lines told;
     std::mutex mutex;
     auto shares = shares_of(file, 3);
@@ -162,9 +164,13 @@ TEST_CASE("share of a scene: runs of shares have the events of the scene, and go
       Lines lines;
       RunOptions options{.domains = 3, .processes = &processes};
       options.checkpoint_every = 1;
+      options.checkpoint_bodies = [&](std::vector<char> block) {
+        const std::scoped_lock lock(mutex);
+        coming.push_back(std::move(block));
+      };
       options.checkpoint = [&](const kds::Snapshot& state) {
         const std::scoped_lock lock(mutex);
-        half = state;
+        if (team.rank() == 0) half = state, blocks = std::exchange(coming, {});
       };
       const RunResult result = run(share, options, lines);
       if (result.bodies != 15) throw std::runtime_error("the number of bodies is wrong");
@@ -173,6 +179,12 @@ TEST_CASE("share of a scene: runs of shares have the events of the scene, and go
       team.of_first(0);
       const kds::Snapshot from = half;
       options.resume = &from, options.checkpoint_every = 0;
+      options.resume_bodies = [&, next = team.rank()](std::vector<char>& block) mutable {
+        if (next >= blocks.size()) return false;
+        block = blocks[next];
+        next += 3;
+        return true;
+      };
       Lines later;
       run(share, options, later);
       if (team.rank() == 0 && (later.text.empty() || !right.text.ends_with(later.text))) {

@@ -28,9 +28,47 @@ if(NOT one_turning STREQUAL several_turning OR NOT domains EQUAL 4 OR contacts L
 endif()
 
 # A run that has ended early goes on from its last checkpoint, with as many processes as there are then. What it had
-# written after that is dropped.
+# written after that is dropped. Each process has written the bodies that it answers for.
+function(require_parts count)
+  file(GLOB parts RELATIVE "${FOLDER}" "${FOLDER}/run.state.*")
+  list(LENGTH parts there)
+  if(NOT there EQUAL count)
+    message(FATAL_ERROR "a checkpoint is to have ${count} parts, and there are: ${parts}")
+  endif()
+endfunction()
 run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events parts.csv --checkpoint run.state
   --checkpoint-every 1.5 --quiet)
+require_parts(${PROCESSES})
+
+# Parts that are damaged, cut, missing, or of another checkpoint are named, and nothing is changed.
+file(RENAME "${FOLDER}/parts.csv" "${FOLDER}/parts.csv.unfinished")
+file(GLOB last "${FOLDER}/run.state.*.1")
+get_filename_component(name "${last}" NAME)
+set(refused balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 1.5 --resume)
+function(refuses_part expected)
+  foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL}" "${TOOL}")
+    execute_process(COMMAND ${with} ${refused} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET
+      ERROR_VARIABLE text)
+    string(FIND "${text}" "${name}: ${expected}" place)
+    string(REGEX MATCHALL "run[.]state[^\n]*" lines "${text}")
+    list(LENGTH lines count)
+    if(NOT ended EQUAL 2 OR place EQUAL -1 OR NOT count EQUAL 1)
+      message(FATAL_ERROR "${with}: ended with ${ended}, and said:\n${text}\nnot once: ${name}: ${expected}")
+    endif()
+  endforeach()
+endfunction()
+file(RENAME "${last}" "${FOLDER}/kept")
+refuses_part("file: cannot be read: No such file or directory")
+file(WRITE "${last}" "KDSBODY1")
+refuses_part("part of a checkpoint: has 8 bytes, and there were ")
+run(${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 3 --domains 4 --checkpoint other.state
+  --checkpoint-every 1.25 --quiet)
+file(GLOB other "${FOLDER}/other.state.*.1")
+file(COPY_FILE "${other}" "${last}")
+refuses_part("part of a checkpoint: ")
+file(RENAME "${FOLDER}/kept" "${last}")
+file(RENAME "${FOLDER}/parts.csv.unfinished" "${FOLDER}/parts.csv")
+
 foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_TOOL}" "${TOOL}" "${TOOL};--domains;5")
   file(RENAME "${FOLDER}/parts.csv" "${FOLDER}/parts.csv.unfinished")
   run(${with} balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 1.5 --resume --quiet)
@@ -39,6 +77,19 @@ foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_T
     message(FATAL_ERROR "a run that went on with ${with} has other events: ${FOLDER}/parts.csv")
   endif()
 endforeach()
+
+# The same of a run whose processes are killed while they write or run, again and again.
+execute_process(COMMAND timeout 2 ${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events
+  killed.csv --checkpoint killed.state --checkpoint-every 0.02 --quiet WORKING_DIRECTORY "${FOLDER}" OUTPUT_QUIET
+  ERROR_QUIET)
+if(EXISTS "${FOLDER}/killed.csv.unfinished" AND EXISTS "${FOLDER}/killed.state")
+  run(${MPIRUN} 2 "${MPI_TOOL}" balls.json --until 4 --events killed.csv --checkpoint killed.state --checkpoint-every 1.5
+    --resume --quiet)
+  file(SHA256 "${FOLDER}/killed.csv" killed)
+  if(NOT killed STREQUAL one)
+    message(FATAL_ERROR "a run that went on after it was killed has other events: ${FOLDER}/killed.csv")
+  endif()
+endif()
 
 file(STRINGS "${FOLDER}/one.csv" lines)
 list(LENGTH lines count)

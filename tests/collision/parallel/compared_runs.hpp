@@ -4,6 +4,7 @@
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
+#include "tests/collision/parallel/states_in_parts.hpp"
 #include "tests/collision/parallel/thread_processes.hpp"
 #include "tests/collision/random_scenes.hpp"
 
@@ -86,8 +87,34 @@ inline void require_same(const std::vector<Event>& right, const std::vector<Even
   throw std::runtime_error(text.str());
 }
 
+/// What goes on from a state in parts, by so many processes, has the motions and the last events of one world.
+template <class Motion>
+void require_goes_on(const Staging<Motion>& scene, const ParallelOptions& parallel, std::size_t count,
+                     const StateInParts& state, const std::vector<Event>& later, const BasicWorld<Motion>& right,
+                     const std::string& what) {
+  const auto blocks = state.blocks();
+  const auto go_on = [&](Processes* processes) {
+    const std::size_t rank = processes ? processes->rank() : 0;
+    DividedLog log;
+    BasicParallelWorld<Motion> world(scene.options, parallel, &log, processes);
+    world.load_parts(state.rest, share_of(blocks, rank, count));
+    if (world.size() != right.size()) throw std::runtime_error(what + ": bodies are missing");
+    world.advance_to(scene.end_time);
+    if (rank == 0) require_same(later, log.events, what);
+    auto& whole = world.whole();
+    whole.audit();
+    for (BodyId id = 0; id < right.size(); ++id) {
+      if (!(whole.motion(id) == right.motion(id)))
+        throw std::runtime_error(what + ": the motion of body " + std::to_string(id) + " differs");
+    }
+  };
+  if (count == 1) return go_on(nullptr);
+  ThreadProcesses(count).run([&](Processes& processes) { go_on(&processes); });
+}
+
 /// Throws std::runtime_error, and says what differs, unless the events of the run in domains are those of one world,
-/// and so are the motions at the end, and the later events of a world that is loaded from what was saved on the way.
+/// and so are the motions at the end, and the later events of a world that is loaded from what was saved on the way,
+/// and of other processes that go on from what was saved there in parts.
 template <class Motion>
 void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen) {
   std::ostringstream how;
@@ -100,6 +127,8 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
   scene.fill(world);
   world.advance_to(scene.end_time);
 
+  StateInParts state(manner.processes);
+  std::size_t before = 0;  // events, when it was saved
   const auto run = [&](Processes* processes) {
     DividedLog log;
     BasicParallelWorld<Motion> divided(scene.options, manner.parallel, &log, processes);
@@ -108,6 +137,10 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
     for (std::size_t poll = 1; poll < manner.polls; ++poll) {
       divided.advance_to(scene.end_time * static_cast<double>(poll) / static_cast<double>(manner.polls));
       if (poll + 1 < manner.polls) continue;
+      const std::size_t domains = divided.domains();
+      state.save(divided, rank, 1 + right.events.size() % 40);
+      if (rank == 0) before = log.events.size();
+      if (divided.domains() != domains) throw std::runtime_error(what + ": it is one world to be saved");
       const Snapshot saved = save(divided);
       WholeLog<Motion> later;
       BasicWorld<Motion> loaded(scene.options, &later);
@@ -137,8 +170,16 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
     }
     if (rank == 0) seen.add(told, log.events.size());
   };
-  if (manner.processes == 1) return run(nullptr);
-  ThreadProcesses(manner.processes).run([&](Processes& processes) { run(&processes); });
+  if (manner.processes == 1) {
+    run(nullptr);
+  } else {
+    ThreadProcesses(manner.processes).run([&](Processes& processes) { run(&processes); });
+  }
+  if (manner.polls == 1) return;
+  const std::vector<Event> later(right.events.begin() + static_cast<std::ptrdiff_t>(before), right.events.end());
+  const std::size_t others = 1 + (manner.processes + right.events.size()) % 4;
+  require_goes_on(scene, manner.parallel, others, state, later, world,
+                  what + ", gone on from by " + std::to_string(others));
 }
 
 }  // namespace kds::collision::tests
