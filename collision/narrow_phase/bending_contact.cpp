@@ -225,8 +225,7 @@ double BendingContact<Motion>::first_contact(const Body& a, const Body& b, doubl
   if (!(t0 <= horizon)) return never;
   BendingPair<Motion> pair(a, b, horizon);
   if (mode == ContactMode::resolved) return pair.meeting_after(t0, horizon);
-  const double begin = touch_after(pair, t0, horizon, false).begin;
-  return begin <= horizon ? std::max(begin, t0) : never;
+  return first_touch(pair, t0, horizon);
 }
 
 template <class Motion>
@@ -238,16 +237,14 @@ double BendingContact<Motion>::apart_until(const Body& a, const Body& b, double 
 template <class Motion>
 bool BendingContact<Motion>::in_contact(const Body& a, const Body& b, double t) {
   BendingPair<Motion> pair(a, b, t);
-  return touch_after(pair, t, t, false).begin <= t;
+  return touch_at(pair, t);
 }
 
 template <class Motion>
 double BendingContact<Motion>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
   BendingPair<Motion> pair(a, b, horizon);
-  const TouchSpan touch = touch_after(pair, t0, horizon, true);
-  if (!(touch.begin <= t0)) return t0;
-  return touch.end <= horizon ? touch.end : never;
+  return first_apart(pair, t0, horizon);
 }
 
 template <class Motion>

@@ -205,10 +205,8 @@ class PlaneAndMesh {
 template <class Motion>
 double HalfSpaceAndBendingMesh<Motion>::first_contact(const Body& a, const Body& b, double t0, double horizon,
                                                       ContactMode, FoundTouch*) {
-  if (!(t0 <= horizon)) return never;
   PlaneAndMesh<Motion> pair(a, b);
-  const double begin = touch_after(pair, t0, horizon, false).begin;
-  return begin <= horizon ? std::max(begin, t0) : never;
+  return first_touch(pair, t0, horizon);
 }
 
 template <class Motion>
@@ -220,16 +218,13 @@ double HalfSpaceAndBendingMesh<Motion>::apart_until(const Body& a, const Body& b
 template <class Motion>
 bool HalfSpaceAndBendingMesh<Motion>::in_contact(const Body& a, const Body& b, double t) {
   PlaneAndMesh<Motion> pair(a, b);
-  return touch_after(pair, t, t, false).begin <= t;
+  return touch_at(pair, t);
 }
 
 template <class Motion>
 double HalfSpaceAndBendingMesh<Motion>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
-  if (!(t0 <= horizon)) return never;
   PlaneAndMesh<Motion> pair(a, b);
-  const TouchSpan touch = touch_after(pair, t0, horizon, true);
-  if (!(touch.begin <= t0)) return t0;
-  return touch.end <= horizon ? touch.end : never;
+  return first_apart(pair, t0, horizon);
 }
 
 template <class Motion>

@@ -66,23 +66,18 @@ class Course {
 }  // namespace
 
 double first_self_contact(const MeshScript& script, double t0, double horizon) {
-  if (!(t0 <= horizon)) return never;
   Course course(script);
-  const double begin = touch_after(course, t0, horizon, false).begin;
-  return begin <= horizon ? std::max(begin, t0) : never;
+  return first_touch(course, t0, horizon);
 }
 
 bool in_self_contact(const MeshScript& script, double t) {
   Course course(script);
-  return touch_after(course, t, t, false).begin <= t;
+  return touch_at(course, t);
 }
 
 double first_self_separation(const MeshScript& script, double t0, double horizon) {
-  if (!(t0 <= horizon)) return never;
   Course course(script);
-  const TouchSpan touch = touch_after(course, t0, horizon, true);
-  if (!(touch.begin <= t0)) return t0;
-  return touch.end <= horizon ? touch.end : never;
+  return first_apart(course, t0, horizon);
 }
 
 Contact self_contact_at(const MeshScript& script, double t) {

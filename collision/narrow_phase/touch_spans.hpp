@@ -69,4 +69,27 @@ TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
   return open ? TouchSpan{touch.begin, never} : TouchSpan{};
 }
 
+/// The first time in [t, horizon] at which they are in contact, or `never`.
+template <class Course>
+double first_touch(Course& course, double t, double horizon) {
+  if (!(t <= horizon)) return never;
+  const double begin = touch_after(course, t, horizon, false).begin;
+  return begin <= horizon ? std::max(begin, t) : never;
+}
+
+/// Whether they are in contact at t.
+template <class Course>
+bool touch_at(Course& course, double t) {
+  return touch_after(course, t, t, false).begin <= t;
+}
+
+/// The first time in [t, horizon] at which they are not in contact, or `never`.
+template <class Course>
+double first_apart(Course& course, double t, double horizon) {
+  if (!(t <= horizon)) return never;
+  const TouchSpan touch = touch_after(course, t, horizon, true);
+  if (!(touch.begin <= t)) return t;
+  return touch.end <= horizon ? touch.end : never;
+}
+
 }  // namespace kds::collision
