@@ -93,10 +93,11 @@ class TellerOfDomains final : public ParallelListener, private Rows {
   void rests_at_wall(const WallEvent& e) override { hand_on(EventKind::rest_at_wall, e); }
   void wakes_at_wall(const WallEvent& e) override { hand_on(EventKind::wake_at_wall, e); }
   void passes(const PairEvent& e) override { hand_on(EventKind::pass, e); }
+  void timer(TimerId timer, double time) override { hand_on(timer_kind, timer, time, 0); }
 
  private:
-  void hand_on(EventKind kind, const auto& event) {
-    tell(kind, event);
+  void hand_on(const auto&... event) {
+    tell(event...);
     if (Clock::now() >= time_up) throw OutOfTime{};
   }
 };

@@ -95,9 +95,9 @@ class BodyStore {
     engine().forget(slots);
   }
   /// As Engine::note_passed().
-  void note_passed(double t) {
-    whole_.note_passed(t);
-    if (part_) part_->engine().note_passed(t);
+  std::vector<Timers::Image::One> note_passed(double t) {
+    if (part_) part_->engine().note_passed(t);  // which has no timers
+    return whole_.note_passed(t);
   }
 
  private:

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -148,7 +149,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void require_told(const char* function) const {
     require_outside(function);
-    if (events_.empty()) return;
+    if (events_.empty() && timers_.empty()) return;
     throw std::logic_error(std::string(function) +
                            ": a listener has thrown, and the events after that are still to be told, by advance_to()");
   }
@@ -283,6 +284,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.copies_made += outcome.copies_made;
     ++counters_.steps;
     now_ = end;
+    for (const auto& timer : domains_.take_timers()) timers_.push_back(timer);
     if (parallel_.steps) {
       step_ = domains_.take_step();
     } else {
@@ -316,7 +318,23 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   void tell_events() {
     const kds::detail::RaisedFlag telling(telling_);
     if (step_) parallel_.steps->on_step(*std::exchange(step_, std::nullopt));
-    while (!events_.empty()) relay(events_.take_next(), store_.bodies(), *listener_);
+    while (!events_.empty()) {
+      const DomainEvent& next = events_.next();
+      tell_timers(next.contact.time, next.kind != DomainEvent::Kind::overlap);
+      relay(events_.take_next(), store_.bodies(), *listener_);
+    }
+    tell_timers(now_, true);
+  }
+  /// Those that have rung before t, or then, too. Of what happens at one time overlaps come first.
+  void tell_timers(double t, bool then) {
+    const auto is_due = [&] {
+      return !timers_.empty() && (timers_.front().time < t || (then && timers_.front().time == t));
+    };
+    while (is_due()) {
+      const auto [time, timer] = timers_.front();
+      timers_.pop_front();
+      if (listener_ && team_.rank() == 0) listener_->timer(timer, time);
+    }
   }
 
   const ParallelOptions parallel_;
@@ -328,10 +346,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   World world_;            ///< runs the scene while it is one world; else has its bodies, or lends them
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  Domains<Motion> domains_;         ///< none while the scene is one world
-  const bool logs_;                 ///< whether domains record events
-  EventMerge events_;               ///< that have not been told yet
-  std::optional<StepEvents> step_;  ///< the same, where each process takes those of its own domains
+  Domains<Motion> domains_;                ///< none while the scene is one world
+  const bool logs_;                        ///< whether domains record events
+  EventMerge events_;                      ///< that have not been told yet
+  std::deque<Timers::Image::One> timers_;  ///< that have rung, and have not been told yet
+  std::optional<StepEvents> step_;         ///< the same, where each process takes those of its own domains
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be

@@ -25,6 +25,7 @@ class ParallelListener {
   virtual void separation(const PairEvent&) {}
   virtual void overlap(const PairEvent&) {}
   virtual void wall(const WallEvent&) {}
+  virtual void timer(TimerId, double /*time*/) {}  ///< a timer that was set in whole() has rung
   // These happen only while the scene is run as one world.
   virtual void rebound_suppressed(const PairEvent&) {}
   virtual void rebound_suppressed_at_wall(const WallEvent&) {}
@@ -43,7 +44,7 @@ class ParallelListener {
 ///
 /// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something,
 /// or bodies that turn are about to; meshes that bend; box functions; response `callback`; reports of pairs or of
-/// pieces. What this costs is in docs/parallel.md. Timers ring, and nobody is told.
+/// pieces. What this costs is in docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own

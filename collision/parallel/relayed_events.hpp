@@ -56,6 +56,7 @@ class RelayedEvents final : public BasicWorldListener<Motion> {
   void wakes(World&, const PairEvent& event) override { listener_.wakes(event); }
   void wakes_at_wall(World&, const WallEvent& event) override { listener_.wakes_at_wall(event); }
   void passes(World&, const PairEvent& event) override { listener_.passes(event); }
+  void timer(World& world, TimerId timer) override { listener_.timer(timer, world.now()); }
 
  private:
   ParallelListener silent_;

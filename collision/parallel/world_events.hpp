@@ -66,11 +66,15 @@ class BasicEventMerge {
   bool empty() const { return left_ == 0; }
 
   /// Precondition: not empty. Throws std::logic_error if no event is possible: then the logs are not of one history.
-  DomainEvent take_next() {
+  const DomainEvent& next() const {
     if (possible_.empty()) throw std::logic_error("ParallelWorld: domains disagree about what has happened");
+    return *logs_.head(possible_.top().domain);
+  }
+  /// The same, and leaves it behind.
+  DomainEvent take_next() {
+    const DomainEvent event = next();
     const std::size_t domain = possible_.top().domain;
     possible_.pop();
-    const DomainEvent event = *logs_.head(domain);
     const std::size_t other = event.other_owner;
     go_on(domain);
     if (other != DomainEvent::nobody) go_on(other);

@@ -97,7 +97,7 @@ void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progr
 }
 
 template <class Motion>
-void Engine<Motion>::note_passed(double t) {
+std::vector<Timers::Image::One> Engine<Motion>::note_passed(double t) {
   for (const BodySlot slot : bodies_.take_waiting(bodies_.waiting().size())) bodies_[slot].entered = true;
   while (scripts_.next_time() <= t) {
     for (const auto& [slot, motion] : scripts_.take_next()) {
@@ -106,7 +106,12 @@ void Engine<Motion>::note_passed(double t) {
       for (const BodySlot sensor : bodies_.attachments().sensors(slot)) bodies_[sensor].entered = true;
     }
   }
-  while (timers_.next_time() <= t) timers_.take_next();
+  std::vector<Timers::Image::One> rung;
+  while (timers_.next_time() <= t) {
+    const double time = timers_.next_time();
+    rung.push_back({time, timers_.take_next()});
+  }
+  return rung;
 }
 
 template <class Motion>

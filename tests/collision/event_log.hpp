@@ -16,11 +16,11 @@ namespace kds::collision::tests {
 
 using Eigen::Vector3d;
 
-enum class Kind { contact, separation, overlap, wall, pair_began, pair_ended, rebound_suppressed, rests, wakes };
+enum class Kind { contact, separation, overlap, wall, pair_began, pair_ended, rebound_suppressed, rests, wakes, timer };
 
 inline const char* name(Kind kind) {
-  constexpr std::array names{"contact",    "separation",         "overlap", "wall", "pair_began",
-                             "pair_ended", "rebound_suppressed", "rests",   "wakes"};
+  constexpr std::array names{"contact",    "separation",         "overlap", "wall",  "pair_began",
+                             "pair_ended", "rebound_suppressed", "rests",   "wakes", "timer"};
   return names[static_cast<std::size_t>(kind)];
 }
 

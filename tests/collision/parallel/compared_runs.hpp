@@ -75,6 +75,7 @@ struct WholeLog final : BasicWorldListener<Motion> {
   }
   void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
   void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
+  void timer(W& world, TimerId timer) override { events.push_back({Kind::timer, timer, 0, {.time = world.now()}}); }
 };
 
 inline void require_same(const std::vector<Event>& right, const std::vector<Event>& log, const std::string& what) {

@@ -24,6 +24,7 @@ struct ParallelLog : ParallelListener {
   void overlap(const PairEvent& e) override { note({Kind::overlap, e.a, e.b, e.contact}); }
   void wall(const WallEvent& e) override { note({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact}); }
   void rebound_suppressed(const PairEvent& e) override { note({Kind::rebound_suppressed, e.a, e.b, e.contact}); }
+  void timer(TimerId timer, double time) override { note({Kind::timer, timer, 0, {.time = time}}); }
 };
 
 /// The first event in which two logs differ, or the length of both.
