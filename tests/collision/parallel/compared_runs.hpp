@@ -57,27 +57,6 @@ struct DividedLog final : ParallelLog {
   void wakes(const PairEvent& e) override { note({Kind::wakes, e.a, e.b, e.contact}); }
 };
 
-/// The same of a World.
-template <class Motion>
-struct WholeLog final : BasicWorldListener<Motion> {
-  using W = BasicWorld<Motion>;
-
-  std::vector<Event> events;
-
-  void contact(W&, const PairEvent& e) override { events.push_back({Kind::contact, e.a, e.b, e.contact}); }
-  void separation(W&, const PairEvent& e) override { events.push_back({Kind::separation, e.a, e.b, e.contact}); }
-  void overlap(W&, const PairEvent& e) override { events.push_back({Kind::overlap, e.a, e.b, e.contact}); }
-  void wall(W&, const WallEvent& e) override {
-    events.push_back({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
-  }
-  void rebound_suppressed(W&, const PairEvent& e) override {
-    events.push_back({Kind::rebound_suppressed, e.a, e.b, e.contact});
-  }
-  void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
-  void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
-  void timer(W& world, TimerId timer) override { events.push_back({Kind::timer, timer, 0, {.time = world.now()}}); }
-};
-
 inline void require_same(const std::vector<Event>& right, const std::vector<Event>& log, const std::string& what) {
   const std::size_t first = first_difference(right, log);
   if (first == right.size() && first == log.size()) return;

@@ -1,4 +1,4 @@
-// The events of a ParallelWorld, to be compared with those of a World.
+// The events of a ParallelWorld, and of the World with which it is compared.
 #pragma once
 
 #include "collision/parallel/parallel_world.hpp"
@@ -25,6 +25,27 @@ struct ParallelLog : ParallelListener {
   void wall(const WallEvent& e) override { note({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact}); }
   void rebound_suppressed(const PairEvent& e) override { note({Kind::rebound_suppressed, e.a, e.b, e.contact}); }
   void timer(TimerId timer, double time) override { note({Kind::timer, timer, 0, {.time = time}}); }
+};
+
+/// The same of a World, and all that a heap tells.
+template <class Motion>
+struct WholeLog final : BasicWorldListener<Motion> {
+  using W = BasicWorld<Motion>;
+
+  std::vector<Event> events;
+
+  void contact(W&, const PairEvent& e) override { events.push_back({Kind::contact, e.a, e.b, e.contact}); }
+  void separation(W&, const PairEvent& e) override { events.push_back({Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(W&, const PairEvent& e) override { events.push_back({Kind::overlap, e.a, e.b, e.contact}); }
+  void wall(W&, const WallEvent& e) override {
+    events.push_back({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+  }
+  void rebound_suppressed(W&, const PairEvent& e) override {
+    events.push_back({Kind::rebound_suppressed, e.a, e.b, e.contact});
+  }
+  void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
+  void timer(W& world, TimerId timer) override { events.push_back({Kind::timer, timer, 0, {.time = world.now()}}); }
 };
 
 /// The first event in which two logs differ, or the length of both.

@@ -2,7 +2,6 @@
 // have.
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
-#include "tests/collision/event_log.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
 #include "tests/collision/parallel/states_in_parts.hpp"
 #include "tests/collision/parallel/thread_processes.hpp"
@@ -24,12 +23,12 @@ namespace {
 
 using Eigen::Vector3d;
 using tests::Event;
-using tests::EventLog;
 using tests::ParallelLog;
 using tests::run_by;
 using tests::share_of;
 using tests::StateInParts;
 using tests::ThreadProcesses;
+using Log = tests::WholeLog<certificates::PointMotion<1>>;
 using Blocks = std::vector<std::vector<char>>;
 
 /// A scene of all that is divided, at 0.5: sensors that are attached, ignored pairs, scripts, bodies that enter later,
@@ -142,7 +141,7 @@ TEST_CASE("Saved parts: what is missing, there twice, or of another state is ref
 
 TEST_CASE("Saved parts: a World's state is one with all bodies in the rest", "[parallel]") {
   const Mixed mixed;
-  EventLog<1> right;
+  Log right;
   World<1> world(mixed.options, &right);
   mixed.fill(world);
   world.advance_to(0.5);
@@ -160,7 +159,7 @@ TEST_CASE("Saved parts: a World's state is one with all bodies in the rest", "[p
       again.save(divided, rank, 1);
       divided.advance_to(3);
       if (rank > 0) return;
-      EventLog<1> after;
+      Log after;
       World<1> loaded(mixed.options, &after);
       restore(again.rest, loaded);
       loaded.advance_to(3);
@@ -182,7 +181,7 @@ TEST_CASE("Saved parts: a World's state is one with all bodies in the rest", "[p
   CHECK(blocks.size() == 11);
   ParallelWorld<1> alone(mixed.options, {.threads = 1, .domains = 1});
   alone.load_parts(state.rest, share_of(blocks, 0, 1));
-  EventLog<1> log;
+  Log log;
   World<1> loaded(mixed.options, &log);
   restore(save(alone.whole()), loaded);
   CHECK(loaded.add_body(tests::ball<1>(0.1, Vector3d(0, 50, 0))) == body_id(1, 11));
