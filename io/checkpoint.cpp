@@ -66,6 +66,9 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path file, kds::collision::T
     }
   }
   turn_ = team_.of_first(turn.value_or(0));
+  // Whether they can be written is found out now, and not after the hours that are to be saved.
+  if (team_.rank() == 0) OutputFile(file_.string());
+  OutputFile(bodies_path(file_, 1 - turn_, team_.rank()));
 }
 
 void CheckpointWriter::write_bodies(const std::vector<char>& block) {

@@ -21,6 +21,9 @@ using std::filesystem::file_type;
 constexpr std::size_t most_files = 8;
 std::array<std::atomic<char*>, most_files> open_temporaries{};
 
+/// Temporary files of one name that processes which were killed may have left: looked past.
+constexpr int most_left = 1000;
+
 extern "C" void remove_temporaries(int signal) {
   for (const auto& name : open_temporaries) {
     if (const char* file = name.load()) unlink(file);
@@ -83,11 +86,15 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dang
     if (error) fail(error.value(), true);
   }
   const mode_t mode = replaces ? static_cast<mode_t>(status.permissions() & std::filesystem::perms::all) : 0666;
-  temporary_ = target_;
-  temporary_ += ".part-" + std::to_string(getpid());
-  const int descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+  // A process of the same number, in a container perhaps, may have left one when it was killed.
+  const std::string part = target_.string() + ".part-" + std::to_string(getpid());
+  int descriptor = -1, reason = EEXIST;
+  for (int others = 0; descriptor < 0 && reason == EEXIST && others < most_left; ++others) {
+    temporary_ = others == 0 ? part : part + "-" + std::to_string(others);
+    descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    reason = errno;
+  }
   if (descriptor < 0) {
-    const int reason = errno;
     temporary_.clear();
     fail(reason, true);
   }
@@ -97,7 +104,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dang
 }
 
 OutputFile::OutputFile(const std::string& path, std::uint64_t from)
-    : path_(path), target_(past_dangling_links(path)), stays_(true) {
+    : path_(path), target_(past_dangling_links(path)), stays_(from > 0), goes_on_(true) {
   const std::filesystem::path unfinished = target_.string() + ".unfinished";
   const auto refuse = [&](const std::string& why) {
     throw OutputError(unfinished.string() + ": file: cannot be gone on with: " + why, true);
@@ -138,6 +145,7 @@ void OutputFile::write(std::string_view text) {
 
 std::uint64_t OutputFile::flush() {
   if (std::fflush(file_) != 0) fail(errno);
+  stays_ = goes_on_;
   return static_cast<std::uint64_t>(std::ftell(file_));
 }
 

@@ -33,9 +33,10 @@ void remove_temporaries_at_signals();
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
-  /// One that may take several runs to write: to `path` with ".unfinished" after it, which stays if the run ends before
-  /// commit(), so that a later one can go on. `from`: so many bytes of that file, which must be there, are kept, and
-  /// what follows them is dropped; if 0, there must be no such file.
+  /// One that may take several runs to write: to `path` with ".unfinished" after it, which stays if the run ends
+  /// between flush() and commit(), so that a later one can go on; what no flush() tells of is removed. `from`: so many
+  /// bytes of that file, which must be there, are kept, and what follows them is dropped; if 0, there must be no such
+  /// file.
   OutputFile(const std::string& path, std::uint64_t from);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -56,6 +57,7 @@ class OutputFile {
   std::filesystem::path target_;     ///< path_, with symbolic links resolved
   std::filesystem::path temporary_;  ///< empty where path_ is written directly
   bool stays_ = false;               ///< the temporary file, if there is no commit()
+  bool goes_on_ = false;             ///< a later run may go on with it
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes
 };

@@ -131,9 +131,10 @@ ContactEstimate sought_first_contact(const MovingShape<Motion>& a, const MovingS
                                      double horizon, ContactMode mode, FoundTouch* found, bool estimate) {
   const PairTests<Motion>& tests = pair_tests<Motion>(a.shape, b.shape);
   const double end = end_of_search(a, b, t0, horizon);
-  const ContactEstimate next = estimate && tests.estimated_contact
-                                   ? tests.estimated_contact(a, b, t0, end, mode)
+  const ContactEstimate next = tests.estimated_contact
+                                   ? tests.estimated_contact(a, b, t0, end, horizon, mode, estimate)
                                    : ContactEstimate{first_contact(a, b, t0, end, mode, found), true};
+  if (next.time == never && !next.exact) return {never, true};  // up to the horizon
   return next.time == never && end < horizon ? ContactEstimate{end, false} : next;
 }
 

@@ -21,8 +21,11 @@ struct PairTests {
   double (*first_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch* found);
   /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
   double (*apart_until)(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
-  /// As first_contact, or an earlier time, of bodies of which apart_until tells nothing at t0. Null: as first_contact.
-  ContactEstimate (*estimated_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  /// As first_contact, of bodies of which apart_until tells nothing at t0; or a time before which there is no contact:
+  /// one up to `farthest` that costs no more (`never`, not
+  /// exact, if there is none until then), or with `earlier` an earlier one that costs less. Null: as first_contact.
+  ContactEstimate (*estimated_contact)(const Body& a, const Body& b, double t0, double horizon, double farthest,
+                                       ContactMode mode, bool earlier);
   bool (*in_contact)(const Body& a, const Body& b, double t);
   double (*first_separation)(const Body& a, const Body& b, double t0, double horizon);
   Contact (*contact_at)(const Body& a, const Body& b, double t, const FoundTouch& found);
@@ -39,7 +42,7 @@ KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 /// Whether tests have a function estimated_contact.
 template <class Motion, class Tests>
 concept estimates_contacts = requires(const MovingShape<Motion>& body) {
-  Tests::estimated_contact(body, body, 0.0, 0.0, ContactMode{});
+  Tests::estimated_contact(body, body, 0.0, 0.0, 0.0, ContactMode{}, true);
 };
 
 /// Tests, given as a struct of static functions with these names, of the same pair named the other way round.
@@ -54,9 +57,9 @@ struct Swapped {
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory) {
     return Tests::apart_until(b, a, t0, horizon, memory);
   }
-  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon,
-                                           ContactMode mode) requires estimates_contacts<Motion, Tests> {
-    return Tests::estimated_contact(b, a, t0, horizon, mode);
+  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon, double farthest,
+                                           ContactMode mode, bool earlier) requires estimates_contacts<Motion, Tests> {
+    return Tests::estimated_contact(b, a, t0, horizon, farthest, mode, earlier);
   }
   static bool in_contact(const Body& a, const Body& b, double t) { return Tests::in_contact(b, a, t); }
   static double first_separation(const Body& a, const Body& b, double t0, double horizon) {

@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+
 #include <string>
 
 namespace test_output_file {
@@ -116,6 +118,30 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   CHECK(folder.file_count() == 1);
   CHECK_THROWS_WITH(OutputFile(path, 4), unfinished + ": file: cannot be gone on with: No such file or directory");
   CHECK_THROWS_AS(OutputFile("/dev/null", 0), OutputError);
+}
+
+TEST_CASE("output file: what a killed process of the same number has left is not in the way") {
+  const TemporaryFolder folder;
+  const std::string left = "a.txt.part-" + std::to_string(getpid());
+  folder.write(left, "half");
+  const std::string path = (folder / "a.txt").string();
+  for (const char* text : {"one", "two"}) {
+    OutputFile file(path);
+    file.write(text);
+    file.commit();
+    CHECK(read_file(path) == text);
+  }
+  CHECK(read_file(folder / left) == "half");
+  CHECK(folder.file_count() == 2);
+}
+
+TEST_CASE("output file: of several runs, what no state tells of does not stay") {
+  const TemporaryFolder folder;
+  {
+    OutputFile file((folder / "a.txt").string(), 0);
+    file.write("nothing goes on from this");
+  }
+  CHECK(folder.file_count() == 0);
 }
 
 }  // namespace test_output_file

@@ -239,10 +239,11 @@ ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<De
 }
 
 /// The first contact in [t0, horizon], or with `estimate` an earlier time, of bodies that doubles have not proved apart
-/// just after t0.
+/// just after t0. What overlaps without a contact is looked at from the beginning of its motion, and so, up to
+/// `farthest`, as far ahead as that was before: then looks that follow each other cost twice what one does.
 template <int Degree>
-ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon, ContactMode mode,
-                             bool estimate) {
+ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon, double farthest,
+                             ContactMode mode, bool estimate) {
   return with_ways<Degree>(a, b, [&](const auto& pair) -> ContactEstimate {
     using Pair = std::decay_t<decltype(pair)>;
     using Ways = WaysApart<Pair, RememberedSigns&>;
@@ -258,7 +259,9 @@ ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, doubl
       const double begun = std::max(a.motion.start(), b.motion.start());
       if (begun < t0 && ways.penetrate(next_down(t0))) {
         const double met = ways.first_penetration(begun, t0);
-        const auto contact = first_approach<Ways, Pair, Degree>(ways, pair, a, b, met, horizon, false);
+        const double far = std::max(horizon, std::min(farthest, t0 + (t0 - begun)));
+        const auto contact = first_approach<Ways, Pair, Degree>(ways, pair, a, b, met, far, false);
+        if (contact.time == never && far > horizon) return ContactEstimate{far < farthest ? far : never, false};
         if (contact.time >= t0) return contact;
       }
     }
@@ -276,17 +279,17 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
     return without_turning<Degree>(
         a, b, [&](const auto& x, const auto& y) { return collision::first_contact(x, y, t0, horizon, mode); });
   }
-  return contact_from<Degree>(a, b, t0, horizon, mode, false).time;
+  return contact_from<Degree>(a, b, t0, horizon, horizon, mode, false).time;
 }
 
 /// What exact tests would look for after a while is mostly not needed: motions change before. So of bodies that have
 /// just met only that is proved.
 template <int Degree>
 ContactEstimate TurningContact<Degree>::estimated_contact(const Body& a, const Body& b, double t0, double horizon,
-                                                          ContactMode mode) {
+                                                          double farthest, ContactMode mode, bool earlier) {
   if (!(t0 <= horizon)) return {never, true};
   if (!turning_counts(a.shape, b.shape)) return {first_contact(a, b, t0, horizon, mode, nullptr), true};
-  return contact_from<Degree>(a, b, t0, horizon, mode, true);
+  return contact_from<Degree>(a, b, t0, horizon, farthest, mode, earlier);
 }
 
 template <int Degree>

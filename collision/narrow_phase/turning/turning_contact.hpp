@@ -39,8 +39,10 @@ struct TurningContact {
   using Body = MovingShape<Motion>;
 
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
-  /// The same, or an earlier time before which there is no contact.
-  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode);
+  /// The same, or a later time, up to `farthest`, before which there is no contact: {never, false} if there is none
+  /// until then. With `earlier` perhaps an earlier one.
+  static ContactEstimate estimated_contact(const Body& a, const Body& b, double t0, double horizon, double farthest,
+                                           ContactMode mode, bool earlier);
   /// A time before which there is no contact; t0 where that takes exact signs.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);
   static bool in_contact(const Body& a, const Body& b, double t);

@@ -58,8 +58,7 @@ void check_estimates(const Solid& a, const Solid& b, double t, Found& found) {
   found.overlap += in_contact(a.body(), b.body(), t);
   found.again += exact != never;
   PairMemory memory;
-  ContactEstimate next =
-      estimated_first_contact(a.body(), b.body(), t, horizon, ContactMode::resolved, memory);
+  ContactEstimate next = estimated_first_contact(a.body(), b.body(), t, horizon, ContactMode::resolved, memory);
   found.proved += !next.exact && next.time > t;
   for (int steps = 0; !next.exact && steps < 1000; ++steps) {
     CHECK(next.time <= exact);
@@ -118,6 +117,27 @@ TEST_CASE("estimates of what has just met a half-space lead to its next contact"
 TEST_CASE("estimates of what lands flat lead to the next contact", "[narrow-phase][turning]") {
   check_scenes(false, true, 1, 60);
   check_scenes(true, true, 1, 60);
+}
+
+// Each look is from the beginning of the motion, so there must be few of them.
+TEST_CASE("what overlaps by a rounding, without a contact, is looked at a few times, however long", "[turning]") {
+  constexpr double height = 0.7, half = 0.3, until = 60, rate = 10;
+  Solid plane{HalfSpace{Vector3d::UnitZ(), height}, {}}, box{Box{Vector3d(0.5, 0.5, half)}, {}};
+  plane.motion.path = {{Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()}};
+  box.motion.path = {{Vector3d(0, 0, next_down(height + half)), Vector3d::Zero(), Vector3d::Zero()}};
+  box.motion.angular_velocity = {0, 0, rate};
+  REQUIRE(in_contact(plane.body(), box.body(), 0));
+  PairMemory memory;
+  ContactEstimate next = estimated_first_contact(plane.body(), box.body(), 0, until, ContactMode::resolved, memory);
+  int looks = 1;
+  for (double last = 0; !next.exact && looks < 100; ++looks) {
+    CHECK(next.time > last);
+    last = next.time;
+    next = certified_first_contact(plane.body(), box.body(), last, until, ContactMode::resolved);
+  }
+  CHECK(next.exact);
+  CHECK(next.time == never);
+  CHECK(looks < 20);  // of a quarter of a radian each they would be 2 400
 }
 
 }  // namespace test_turning_estimates
