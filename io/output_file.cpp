@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <system_error>
+#include <utility>
 
 namespace kds::io {
 namespace {
@@ -120,7 +121,10 @@ OutputFile::OutputFile(const std::string& path, std::uint64_t from)
     throw OutputError(unfinished.string() + ": file: is there already, of a run that has not ended", true);
   }
   temporary_ = unfinished;
-  if (from == 0) return;
+  if (from == 0) {
+    slot_ = remember(unfinished);
+    return;
+  }
   const std::uintmax_t size = std::filesystem::file_size(unfinished, error);
   if (error || size < from) {
     refuse("it has " + std::to_string(error ? 0 : size) + " bytes, and the run had written " + std::to_string(from));
@@ -145,7 +149,10 @@ void OutputFile::write(std::string_view text) {
 
 std::uint64_t OutputFile::flush() {
   if (std::fflush(file_) != 0) fail(errno);
-  stays_ = goes_on_;
+  if (goes_on_ && !stays_) {
+    stays_ = true;
+    forget(std::exchange(slot_, -1));
+  }
   return static_cast<std::uint64_t>(std::ftell(file_));
 }
 
