@@ -333,7 +333,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     while (is_due()) {
       const auto [time, timer] = timers_.front();
       timers_.pop_front();
-      if (listener_ && team_.rank() == 0) listener_->timer(timer, time);
+      if (listener_) listener_->timer(timer, time);
     }
   }
 
