@@ -3,6 +3,7 @@
 
 #include "certificates/plane_motion.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -61,6 +62,8 @@ struct TurnsLeft {
   const PlaneMotion<1>& a;
   const PlaneMotion<1>& b;
 
+  TurnsLeft(Lasting<PlaneMotion<1>> first, Lasting<PlaneMotion<1>> second) : a(first), b(second) {}
+
   template <class Number>
   Polynomial<0, Number> polynomial(double /*epoch*/) const {
     const auto& p = a.coordinate;
@@ -79,6 +82,8 @@ struct CrossesFirst {
   const PlaneMotion<1>& a;
   const PlaneMotion<1>& b;
 
+  CrossesFirst(Lasting<PlaneMotion<1>> first, Lasting<PlaneMotion<1>> second) : a(first), b(second) {}
+
   template <class Number>
   Polynomial<0, Number> polynomial(double epoch) const {
     const auto apart = [&](int d) { return difference_about<Number>(a.axis(d), b.axis(d), epoch).c[0]; };
@@ -95,6 +100,8 @@ struct ArrivesFirst {
   static constexpr int degree = 0;
   const Arrival& a;
   const Arrival& b;
+
+  ArrivesFirst(Lasting<Arrival> first, Lasting<Arrival> second) : a(first), b(second) {}
 
   template <class Number>
   Polynomial<0, Number> polynomial(double epoch) const {

@@ -5,6 +5,7 @@
 #include "certificates/squared.hpp"
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 #include "kds/odd_permutation.hpp"
 
@@ -32,6 +33,9 @@ struct InSphere {
   const Path& c;
   const Path& d;
   const Path& e;
+
+  InSphere(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth, Lasting<Path> fifth)
+      : a(first), b(second), c(third), d(fourth), e(fifth) {}
 
   template <class Number>
   auto polynomial(double epoch) const {
@@ -74,5 +78,8 @@ struct InSphere {
             height(a, ax, ay, az) * (bz * cd - cz * bd + dz * bc));
   }
 };
+
+template <class Path>
+InSphere(const Path&, const Path&, const Path&, const Path&, const Path&) -> InSphere<Path>;
 
 }  // namespace kds::certificates

@@ -3,6 +3,7 @@
 
 #include "kds/bounded.hpp"
 #include "kds/certificate.hpp"
+#include "kds/lasting.hpp"
 #include "kds/motion.hpp"
 #include "kds/odd_permutation.hpp"
 
@@ -22,6 +23,9 @@ struct SpaceOrientation {
   const Path& b;
   const Path& c;
   const Path& d;
+
+  SpaceOrientation(Lasting<Path> first, Lasting<Path> second, Lasting<Path> third, Lasting<Path> fourth)
+      : a(first), b(second), c(third), d(fourth) {}
 
   template <class Number>
   auto polynomial(double epoch) const {
@@ -83,5 +87,8 @@ struct NormalDirection {
     return from_a(b, u) * from_a(c, v) - from_a(b, v) * from_a(c, u);
   }
 };
+
+template <class Path>
+SpaceOrientation(const Path&, const Path&, const Path&, const Path&) -> SpaceOrientation<Path>;
 
 }  // namespace kds::certificates

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
-#include "kds/framework/kinetic_rule.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/bracket.hpp"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 
 #include "certificates/arrival.hpp"
 #include "kds/audit.hpp"
-#include "kds/framework/kinetic_rule.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "structures/box_tree.hpp"
 #include "structures/track_box.hpp"

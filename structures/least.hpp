@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/ranking.hpp"
 #include "structures/tournaments.hpp"
 

@@ -3,7 +3,7 @@
 
 #include "kds/audit.hpp"
 #include "kds/framework/elements_rule.hpp"
-#include "kds/framework/kinetic_rule.hpp"
+#include "kds/framework/kinetic.hpp"
 #include "structures/moving_regions.hpp"
 #include "structures/selection.hpp"
 

@@ -69,9 +69,14 @@ class Kinetic final : public KineticOf<Rule>,
                 "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
                 "std::optional or std::variant of certificates");
   static_assert(detail::NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
-  static_assert(detail::Repairs<Rule>, "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing");
-  static_assert(is_outer || (detail::Inserts<Rule> && detail::Removes<Rule>),
-                "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing");
+  static_assert(
+      detail::Repairs<Rule>,
+      "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing, or takes its argument by value or of another "
+      "type: RepairOf<Rule>& is right");
+  static_assert(
+      is_outer || (detail::Inserts<Rule> && detail::Removes<Rule>),
+      "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing, or take another "
+      "argument than RepairOf<Rule>&");
   static_assert(!is_outer || ReportsChanges<typename Standing::Inner>,
                 "kinetic rule: the rule that it stands on has no `Change`, and so tells nothing");
   static_assert(!is_outer || !ReportsChanges<typename Standing::Inner> || detail::HearsWhatIsReported<Rule>,

@@ -62,7 +62,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double now) {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
-  if (busy_) fail_use("the elements may not be edited from within the rule");
+  if (busy_)
+    fail_use("its rule is at work, or has thrown: nothing can be edited from within it, and nothing after that");
   if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
   if constexpr (is_outer) {
     if (inner_->reports_ != followed_reports_) fail_use("the structure that it stands on has changed without it");

@@ -101,8 +101,9 @@ TEST_CASE("a point enters a sphere, four points come to one plane, a weight grow
   CHECK(failure_time(outside, 0) == 4);   // through a
   CHECK(recovery_time(outside, 5) == 8);  // out of it, where (1, 0, 0) is
   CHECK(failure_time(InSphere<PointMotion<1>>{b, a, c, d, b}, 0) == never);
-  CHECK(failure_time(SpaceOrientation<PointMotion<1>>{b, c, d, at(-3, 0, 0, 1)}, 0) ==
-        recovery_time(SpaceOrientation<PointMotion<1>>{c, b, d, at(-3, 0, 0, 1)}, 0));
+  const auto passing = at(-3, 0, 0, 1);
+  CHECK(failure_time(SpaceOrientation<PointMotion<1>>{b, c, d, passing}, 0) ==
+        recovery_time(SpaceOrientation<PointMotion<1>>{c, b, d, passing}, 0));
   const auto weighted = [](const PointMotion<1>& path, double weight, double growth = 0) {
     return WeightedPoint<1, 1>{path, {{weight, growth}}};
   };

@@ -82,14 +82,8 @@ Row run(const std::vector<Query>& queries, const std::vector<double>& truth,
   std::vector<double> times;
   Row row{0, 0, 0};
   for (std::size_t i = 0; i < queries.size(); ++i) {
-    double best = never;
     double contact = 0;
-    for (int round = 0; round < 3; ++round) {
-      const double start = benchmarks::thread_seconds();
-      contact = method(queries[i]);
-      best = std::min(best, benchmarks::thread_seconds() - start);
-    }
-    times.push_back(best);
+    times.push_back(benchmarks::seconds_of_call(3, [&] { contact = method(queries[i]); }));
     row.contacts += contact <= 1;
     // Later than by a hundredth of the second counts as missed: it is another contact.
     row.missed += truth[i] <= 1 && contact > truth[i] + 0.01;
