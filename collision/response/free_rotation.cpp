@@ -29,14 +29,15 @@ int exponent_of(const Vector3d& v) {
   return exponent;
 }
 
-Vector3d quotients(const Vector3d& v, const Vector3d& moments) {
-  return {v[0] / moments[0], v[1] / moments[1], v[2] / moments[2]};
+Vector3d inverse_moments(const PrincipalInertia& inertia) {
+  return {1 / inertia.moments[0], 1 / inertia.moments[1], 1 / inertia.moments[2]};
 }
 
 }  // namespace
 
 Vector3d angular_velocity(const PrincipalInertia& inertia, const RotationState& state) {
-  return turned(state.orientation, quotients(turned(state.orientation.conjugate(), state.momentum), inertia.moments));
+  const Vector3d momentum = turned(state.orientation.conjugate(), state.momentum);
+  return turned(state.orientation, inverse_moments(inertia).cwiseProduct(momentum));
 }
 
 Vector3d angular_momentum(const PrincipalInertia& inertia, const Quaterniond& orientation, const Vector3d& velocity) {
@@ -46,17 +47,17 @@ Vector3d angular_momentum(const PrincipalInertia& inertia, const Quaterniond& or
 Matrix3d inverse_inertia(const PrincipalInertia& inertia, const Quaterniond& orientation) {
   Matrix3d rotation;
   for (int k = 0; k < 3; ++k) rotation.col(k) = turned(orientation, Vector3d::Unit(k));
-  return turned_tensor(Matrix3d(quotients(Vector3d::Ones(), inertia.moments).asDiagonal()), rotation);
+  return turned_tensor(Matrix3d(inverse_moments(inertia).asDiagonal()), rotation);
 }
 
 FreeRotation::FreeRotation(const PrincipalInertia& inertia, const RotationState& state)
     : inertia_(inertia), state_(state) {
   const Vector3d momentum = turned(state.orientation.conjugate(), state.momentum);
-  const Vector3d rates = quotients(momentum, inertia.moments);
+  const Vector3d inverse = inverse_moments(inertia), rates = inverse.cwiseProduct(momentum);
   const int of_momentum = exponent_of(momentum), of_rates = exponent_of(rates);
   rate_ = power_of_two(of_rates);
   for (int i = 0; i < 3; ++i) {
-    inverse_moments_[i] = std::ldexp(1 / inertia.moments[i], of_momentum - of_rates);
+    inverse_moments_[i] = std::ldexp(inverse[i], of_momentum - of_rates);
     momentum_[0][i] = std::ldexp(momentum[i], -of_momentum);
   }
   constexpr double roundings = 0x1p-46;
@@ -116,8 +117,9 @@ Quaterniond FreeRotation::orientation(double t) const {
     const int axis = inertia_.symmetry, across = (axis + 1) % 3;
     const Vector3d momentum = turned(state_.orientation.conjugate(), state_.momentum);
     Vector3d own = Vector3d::Zero();
-    own[axis] = -momentum[axis] * (1 / inertia_.moments[axis] - 1 / inertia_.moments[across]);
-    const Vector3d precession = state_.momentum / inertia_.moments[across];
+    const Vector3d inverse = inverse_moments(inertia_);
+    own[axis] = -momentum[axis] * (inverse[axis] - inverse[across]);
+    const Vector3d precession = inverse[across] * state_.momentum;
     const Quaterniond q = certificates::turned_orientation(state_.orientation, spin_of(precession, state_.time), t);
     return certificates::turned_orientation(q.conjugate(), spin_of(own, state_.time), t).conjugate();
   }

@@ -33,7 +33,8 @@ struct FreeTurning {
   Eigen::Vector3d angular_momentum;  ///< about the centre of mass; mass * length^2 / s
 };
 
-/// In the axes of the world, rad/s.
+/// In the axes of the world, rad/s. It is made with the same rounded inverse moments as inverse_inertia(): if it were
+/// not, each impulse would be wrong in the same sense, and the energy of a gas would drift.
 Eigen::Vector3d angular_velocity(const PrincipalInertia& inertia, const RotationState& state);
 /// The angular momentum of a body with this angular velocity.
 Eigen::Vector3d angular_momentum(const PrincipalInertia& inertia, const Eigen::Quaterniond& orientation,

@@ -1,4 +1,5 @@
-// Worlds of cubes, rods and rings that turn, beside the same without spin.
+// Worlds of cubes, rods and rings that turn, with one moment of inertia and with their own, beside the same without
+// spin.
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
@@ -22,6 +23,7 @@ struct Scene {
   Vector3d half;  ///< of the box around it
   double rate;    ///< rad/s
   double seconds = 2;
+  bool precesses = false;  ///< it has its own moments of inertia, in place of one for all axes
 };
 
 /// Bodies on a lattice, their velocities at random up to 1 in each coordinate, between elastic walls.
@@ -49,7 +51,7 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
       if constexpr (turning) {
         body.motion = {{{{place, velocity}}}};
         body.motion[0].angular_velocity = spin;
-        body.inertia = 2.0 / 3 * scene.half.squaredNorm() / 3;
+        if (!scene.precesses) body.inertia = 2.0 / 3 * scene.half.squaredNorm() / 3;
       } else {
         body.motion = {{{place, velocity}}};
       }
@@ -85,6 +87,8 @@ int main(int argc, char** argv) {
   run<World<1>>(csv, "rods that keep their orientation", {1000, 0.002, Box{rod}, rod, 0});
   run<TurningWorld<1>>(csv, "rods at 1 rad/s", {1000, 0.002, Box{rod}, rod, 1});
   run<TurningWorld<1>>(csv, "rods at 10 rad/s", {1000, 0.002, Box{rod}, rod, 10});
+  run<TurningWorld<1>>(csv, "rods that precess at 1 rad/s", {1000, 0.002, Box{rod}, rod, 1, 2, true});
+  run<TurningWorld<1>>(csv, "rods that precess at 10 rad/s", {1000, 0.002, Box{rod}, rod, 10, 2, true});
   const Vector3d flat(1, 1, 0.25);
   const MeshShape ring{samples::torus(8, 4), 1};
   for (const auto& [packing, seconds] : {std::pair(0.01, 20.0), {0.1, 2.0}}) {
@@ -92,6 +96,8 @@ int main(int argc, char** argv) {
     run<World<1>>(csv, "rings that keep their orientation", {1000, packing, ring, flat, 0, seconds});
     run<TurningWorld<1>>(csv, "rings at 1 rad/s", {1000, packing, ring, flat, 1, seconds});
     run<TurningWorld<1>>(csv, "rings at 10 rad/s", {1000, packing, ring, flat, 10, seconds});
+    run<TurningWorld<1>>(csv, "rings that precess at 1 rad/s", {1000, packing, ring, flat, 1, seconds, true});
+    run<TurningWorld<1>>(csv, "rings that precess at 10 rad/s", {1000, packing, ring, flat, 10, seconds, true});
   }
   return std::fclose(csv) == 0 ? 0 : 1;
 }

@@ -176,6 +176,22 @@ TEST_CASE("free rotation: about a principal axis, or not at all, nothing changes
   CHECK_FALSE(FreeRotation(nearly, turning(nearly, Quaterniond::Identity(), Vector3d(1, 1, 1))).steady());
 }
 
+TEST_CASE("free rotation: velocities and impulses are made with the same inverse moments") {
+  const std::uint64_t seed = 11;
+  CAPTURE(seed);
+  Random random(seed);
+  const Quaterniond upright = Quaterniond::Identity();
+  int unlike = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const PrincipalInertia inertia = diagonal({random.between(0.5, 1), random.between(0.5, 1), random.between(0.5, 1)});
+    const RotationState state{Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)), upright,
+                              0};
+    unlike +=
+        angular_velocity(inertia, state) != inverse_inertia(inertia, upright).diagonal().cwiseProduct(state.momentum);
+  }
+  CHECK(unlike == 0);
+}
+
 TEST_CASE("free rotation: extreme bodies keep their energy") {
   for (const Vector3d& moments :
        {Vector3d(1, 1, 1 + 1e-12), Vector3d(1, 1, 2), Vector3d(1, 1 + 1e-9, 2), Vector3d(1e-6, 1, 1),
