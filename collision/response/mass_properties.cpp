@@ -5,18 +5,13 @@
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/shapes/solid_integrals.hpp"
 #include "collision/vectors.hpp"
-#include "kds/arithmetic/power_of_two.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -29,127 +24,6 @@ using Eigen::Vector3d;
 [[noreturn]] void refuse(const char* kind, const std::string& what) {
   throw std::invalid_argument(std::string("mass_properties: the ") + kind + ' ' + what);
 }
-[[noreturn]] void refuse_mesh(const std::string& what) { refuse("mesh", what); }
-
-/// For each vertex the first one at its place.
-std::vector<std::uint32_t> first_at_place(std::span<const Vector3d> vertices) {
-  const auto before = [&](std::uint32_t i, std::uint32_t j) {
-    const Vector3d& v = vertices[i];
-    const Vector3d& w = vertices[j];
-    return std::tie(v[0], v[1], v[2], i) < std::tie(w[0], w[1], w[2], j);
-  };
-  std::vector<std::uint32_t> order(vertices.size()), first(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), before);
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && vertices[order[k]] == vertices[order[k - 1]];
-    first[order[k]] = same ? first[order[k - 1]] : order[k];
-  }
-  return first;
-}
-
-/// A side of a triangle, between places.
-struct Side {
-  std::uint32_t low, high;  // the first vertices at its ends
-  bool upward;              // from low to high
-  std::uint32_t triangle;
-};
-
-/// Precondition: all sides between two places, whose directions do not cancel each other.
-[[noreturn]] void refuse_edge(std::span<const Side> sides) {
-  const std::string edge = "edge " + std::to_string(sides[0].low) + "-" + std::to_string(sides[0].high);
-  if (sides.size() == 1) {
-    refuse_mesh("is open: " + edge + " belongs to one triangle, " + std::to_string(sides[0].triangle));
-  }
-  if (sides.size() % 2 != 0)
-    refuse_mesh("is open: " + edge + " belongs to " + std::to_string(sides.size()) + " triangles");
-  std::vector<std::uint32_t> up, down;
-  for (const Side& side : sides) (side.upward ? up : down).push_back(side.triangle);
-  const std::vector<std::uint32_t>& more = up.size() > down.size() ? up : down;
-  refuse_mesh("is not consistently oriented: triangles " + std::to_string(more[0]) + " and " + std::to_string(more[1]) +
-              " both run along " + edge + " that way");
-}
-
-/// Checks that triangles run along each edge as often in one direction as in the other. Then the integrals do not
-/// depend on the common corner of the tetrahedra.
-void require_closed(const Mesh& mesh) {
-  const std::vector<std::uint32_t> first = first_at_place(mesh.vertices());
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles().size());
-  for (std::uint32_t i = 0; i < mesh.triangles().size(); ++i) {
-    const Mesh::Triangle& triangle = mesh.triangles()[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = first[triangle[k]], to = first[triangle[(k + 1) % 3]];
-      sides.push_back({std::min(from, to), std::max(from, to), from < to, i});
-    }
-  }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::tie(x.low, x.high, x.triangle) < std::tie(y.low, y.high, y.triangle);
-  });
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i, upward = 0;
-    for (; end < sides.size() && sides[end].low == sides[i].low && sides[end].high == sides[i].high; ++end) {
-      upward += sides[end].upward;
-    }
-    if (2 * upward != end - i) refuse_edge(std::span(sides).subspan(i, end - i));
-    i = end;
-  }
-}
-
-/// Integrals over the solid, with lengths in `unit`, a power of two, counted from `origin`: 6 times the volume, 24
-/// times the integral of x, 120 times that of x x^T. In this unit no coordinate is beyond 1.
-struct Integrals {
-  Vector3d origin;
-  double unit = 1;
-  DoubleDouble volume{};
-  PreciseVector first{};
-  PreciseVector squares{}, products{};  // of x x, y y, z z; of y z, z x, x y
-  double magnitude = 0;                 // sum of bounds on the magnitudes of the tetrahedra's volumes
-
-  /// 6 times the volume, off the exact one by at most this. A determinant is 6 products of 3 exact differences, each
-  /// sum and product rounded by 2^-102 of itself; so are the n sums. The other integrals, with their factors of 6 / 24
-  /// and 6 / 120 and coordinates up to 1, are off by less.
-  double error(std::size_t triangles) const { return (static_cast<double>(triangles) + 16) * 0x1p-102 * magnitude; }
-};
-
-Integrals integrate(const Mesh& mesh) {
-  Integrals sum;
-  // A corner of a triangle: the triangles around it make tetrahedra without volume, which are left out.
-  sum.origin = mesh.vertices()[mesh.triangles()[0][0]];
-  double largest = 0;
-  for (const Mesh::Triangle& triangle : mesh.triangles()) {
-    for (const std::uint32_t i : triangle) {
-      largest = std::max(largest, (mesh.vertices()[i] - sum.origin).cwiseAbs().maxCoeff());
-    }
-  }
-  int exponent = 0;
-  std::frexp(largest, &exponent);
-  sum.unit = power_of_two(exponent);
-  const double per_unit = power_of_two(-exponent);
-  for (const auto& [i, j, k] : mesh.triangles()) {
-    const Vector3d &p = mesh.vertices()[i], &q = mesh.vertices()[j], &r = mesh.vertices()[k];
-    const PreciseVector a = precise_difference(p, sum.origin) * per_unit;
-    const PreciseVector b = precise_difference(q, sum.origin) * per_unit;
-    const PreciseVector c = precise_difference(r, sum.origin) * per_unit;
-    const PreciseVector e = precise_difference(q, p) * per_unit;
-    const PreciseVector f = precise_difference(r, p) * per_unit;
-    const DoubleDouble determinant = dot(a, cross(e, f));
-    sum.magnitude += magnitude_sum(a) * magnitude_sum(e) * magnitude_sum(f);
-    sum.volume = sum.volume + determinant;
-    // Over a tetrahedron with a corner at the origin the integral of x is V / 4 times the sum s of the other corners,
-    // that of x x^T is V / 20 times the sum of their squares and that of s.
-    const PreciseVector s = a + b + c;
-    sum.first += s * determinant;
-    for (std::size_t d = 0; d < 3; ++d) {
-      const auto product = [&](std::size_t x, std::size_t y) {
-        return (a[x] * a[y] + b[x] * b[y] + c[x] * c[y] + s[x] * s[y]) * determinant;
-      };
-      sum.squares[d] = sum.squares[d] + product(d, d);
-      sum.products[d] = sum.products[d] + product((d + 1) % 3, (d + 2) % 3);
-    }
-  }
-  return sum;
-}
 
 /// Errors of the integrals, each relative to 6 times the volume and in the unit of lengths, make at most 12 times as
 /// much of the tensor: 2 for a quotient of integrals, 4 for the product of two centres, both of two squares. The unit
@@ -161,15 +35,15 @@ constexpr double largest_error = 0x1p-56;
 constexpr double least_share = 0x1p-44;
 
 /// A solid that a closed surface bounds, by its integrals. `kind`, in messages.
-Integrals solid_in(const char* kind, const Mesh& mesh) {
-  const Integrals sum = integrate(mesh);
+const SolidIntegrals& solid_in(const char* kind, const Mesh& mesh) {
+  const SolidIntegrals& sum = mesh.solid();
   const double least = sum.error(mesh.triangles().size()) / largest_error;
   if (sum.volume.high < -least) refuse(kind, "is inside out: its triangles turn clockwise seen from outside");
   if (!(sum.volume.high > least)) refuse(kind, "has no volume beyond rounding");
   return sum;
 }
 
-MassProperties of_integrals(const char* kind, const Integrals& sum, double scale, double mass) {
+MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, double scale, double mass) {
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
@@ -222,7 +96,6 @@ MassProperties of(const Capsule& capsule, double mass) {
 }
 
 MassProperties of(const MeshShape& shape, double mass) {
-  require_closed(*shape.mesh);
   return of_integrals("mesh", solid_in("mesh", *shape.mesh), shape.scale, mass);
 }
 
@@ -237,7 +110,7 @@ MassProperties of(const HalfSpace&, double) {
 /// A part of a compound.
 struct SolidPart {
   const char* kind;
-  Integrals integrals;
+  SolidIntegrals integrals;
   double volume;
 };
 
@@ -245,8 +118,7 @@ SolidPart solid_part(const Shape& shape) {
   const auto* const hull = std::get_if<ConvexHull>(&shape);
   const char* const kind = hull ? "hull" : "mesh";
   const Mesh& mesh = hull ? *hull->polytope->surface() : *std::get<MeshShape>(shape).mesh;
-  if (!hull) require_closed(mesh);
-  const Integrals sum = solid_in(kind, mesh);
+  const SolidIntegrals& sum = solid_in(kind, mesh);
   return {kind, sum, (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
 }
 

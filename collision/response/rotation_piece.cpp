@@ -46,11 +46,10 @@ double angle_between(const Quaterniond& a, const Quaterniond& b) {
 }
 
 RotationPiece rotation_piece(const PrincipalInertia& inertia, const RotationState& state, double t,
-                             const Quaterniond& from, double bulge) {
+                             const Quaterniond& free, const Quaterniond& from, double bulge) {
   constexpr double spared = 1.125;
   constexpr double shorter = 0.875;  // of a span that was too long
-  const bool begins = state.time == t;
-  const RotationState here{state.momentum, begins ? state.orientation : orientation_at(inertia, state, t), t};
+  const RotationState here{state.momentum, free, t};
   FreeRotation rotation(inertia, here);
   const Vector3d velocity = angular_velocity(inertia, here);
   const bool on_it = from.coeffs() == here.orientation.coeffs();
@@ -70,7 +69,7 @@ RotationPiece rotation_piece(const PrincipalInertia& inertia, const RotationStat
     throw std::runtime_error(
         "World: a body that precesses turns by more than a radian between two doubles of the clock");
   }
-  const Quaterniond ahead = begins ? rotation.orientation(end) : orientation_at(inertia, state, end);
+  const Quaterniond ahead = state.time == t ? rotation.orientation(end) : orientation_at(inertia, state, end);
   return {end, ahead, rate_between(from, ahead, end - t)};
 }
 

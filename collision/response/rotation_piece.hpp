@@ -26,9 +26,10 @@ struct RotationPiece {
 /// Greatest turn of a piece, rad.
 inline constexpr double longest_turn = 1;
 
-/// The piece that starts with the orientation `from`, of the principal axes, and ends in that of the free rotation.
-/// Precondition: a body that is no top has its state at t; that of a top may be of an earlier time. Throws
-/// std::runtime_error if it turns by more than longest_turn between two doubles of the clock.
+/// The piece that starts at t with the orientation `from`, of the principal axes, and ends in that of the free
+/// rotation, which at t is `free`: orientation_at(inertia, state, t). Precondition: a body that is no top has its state
+/// at t; that of a top may be of an earlier time. Throws std::runtime_error if it turns by more than longest_turn
+/// between two doubles of the clock.
 ///
 /// *How far it is off.* Let a be the greatest angular acceleration during the piece, h its span. Seen from the rotation
 /// of the piece, what the body turns otherwise is a vector with second derivative a that vanishes at both ends: at most
@@ -36,6 +37,6 @@ inline constexpr double longest_turn = 1;
 /// part s of its span. A piece is so long that a h^2 / 8 is `bulge`, with an eighth to spare for what is left out here,
 /// that rotations of a radian do not add up like vectors; and it turns by longest_turn at most.
 RotationPiece rotation_piece(const PrincipalInertia& inertia, const RotationState& state, double t,
-                             const Eigen::Quaterniond& from, double bulge);
+                             const Eigen::Quaterniond& free, const Eigen::Quaterniond& from, double bulge);
 
 }  // namespace kds::collision

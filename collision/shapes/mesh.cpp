@@ -1,5 +1,6 @@
 #include "collision/shapes/mesh.hpp"
 
+#include "collision/shapes/solid_integrals.hpp"
 #include "collision/shapes/surface_tree.hpp"
 #include "collision/vectors.hpp"
 
@@ -7,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -86,16 +88,36 @@ bool is_degenerate(std::span<const Vector3d> vertices, const Mesh::Triangle& tri
   return a == b || b == c || c == a || in_a_line(vertices[a], vertices[b], vertices[c]);
 }
 
-struct Mesh::TreeOnDemand {
-  std::once_flag made;
-  std::optional<SurfaceTree> tree;
+/// What is made when it is first asked for.
+struct Mesh::OnDemand {
+  template <class T>
+  struct Made {
+    std::once_flag flag;
+    std::optional<T> value;
+    std::exception_ptr refused;  // kept, since not all systems can call_once() anew what has thrown
+
+    template <class Make>
+    const T& get(const Make& make) {
+      std::call_once(flag, [&] {
+        try {
+          make(value);
+        } catch (...) {
+          refused = std::current_exception();
+        }
+      });
+      if (refused) std::rethrow_exception(refused);
+      return *value;
+    }
+  };
+  Made<SurfaceTree> surface_tree;
+  Made<SolidIntegrals> solid;
 };
 
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
     : vertices_(std::move(vertices)),
       triangles_(checked(vertices_, std::move(triangles))),
       tree_(vertices_, triangles_),
-      surface_tree_(std::make_shared<TreeOnDemand>()) {
+      on_demand_(std::make_shared<OnDemand>()) {
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, norm(v));
   bounding_radius_ *= 1 + 0x1p-50;  // three roundings of the norm, upward
   shortest_edge_ = std::numeric_limits<double>::infinity();
@@ -128,8 +150,11 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
 }
 
 const SurfaceTree& Mesh::surface_tree() const {
-  std::call_once(surface_tree_->made, [this] { surface_tree_->tree.emplace(vertices_, triangles_); });
-  return *surface_tree_->tree;
+  return on_demand_->surface_tree.get([this](auto& tree) { tree.emplace(vertices_, triangles_); });
+}
+
+const SolidIntegrals& Mesh::solid() const {
+  return on_demand_->solid.get([this](auto& solid) { solid = solid_integrals(vertices_, triangles_); });
 }
 
 std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, double scale) const {

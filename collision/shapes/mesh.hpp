@@ -18,6 +18,7 @@
 namespace kds::collision {
 
 class SurfaceTree;
+struct SolidIntegrals;
 
 /// A mesh that cannot be used. The message names what is wrong and where.
 class InvalidMesh : public std::invalid_argument {
@@ -75,6 +76,9 @@ class Mesh {
   /// The tree for contact with meshes that bend: made when it is first asked for, in O(n log n). Threads may ask at
   /// once.
   const SurfaceTree& surface_tree() const;
+  /// Volume, centre and second moments of what it bounds, by solid_integrals(), which says what it throws: made when
+  /// they are first asked for. Threads may ask at once.
+  const SolidIntegrals& solid() const;
 
   /// Radius of the ball about the origin that holds all vertices, rounded up.
   double bounding_radius() const { return bounding_radius_; }
@@ -105,13 +109,13 @@ class Mesh {
   static constexpr double largest_coordinate = 0x1p100;
 
  private:
-  struct TreeOnDemand;
+  struct OnDemand;
 
   std::vector<Eigen::Vector3d> vertices_;
   std::vector<Triangle> triangles_;
   ObbTree tree_;
   std::vector<VertexPair> used_;  // vertices that triangles use, each once; of an odd number the last one twice
-  std::shared_ptr<TreeOnDemand> surface_tree_;
+  std::shared_ptr<OnDemand> on_demand_;
   double bounding_radius_ = 0;
   double shortest_edge_ = 0;
   bool sharp_ = false;

@@ -84,7 +84,8 @@ Motion Tumbling<Motion>::take_up(BodySlot slot, const Motion& given, double t) {
   body.state.orientation = of_axes(body.inertia, orientation);
   body.state.momentum = angular_momentum(body.inertia, body.state.orientation, given.angular_velocity);
   body.state.time = t;
-  const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.state.orientation, error_);
+  const RotationPiece piece =
+      rotation_piece(body.inertia, body.state, t, body.state.orientation, body.state.orientation, error_);
   begin(slot, piece);
   return motion_of(body, orientation, piece, t);
 }
@@ -97,7 +98,7 @@ typename Tumbling<Motion>::Piece Tumbling<Motion>::take_next() {
   if (body.inertia.symmetry < 0) body.state.orientation = body.ahead, body.state.time = t;
   ++counters_.rotation_pieces;
   if (!body.astray) {
-    const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.ahead, error_);
+    const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.ahead, body.ahead, error_);
     const Motion motion = motion_of(body, of_body(body.inertia, body.ahead), piece, t);
     begin(slot, piece);
     return {slot, motion};
@@ -137,7 +138,8 @@ Eigen::Matrix3d Tumbling<Motion>::inverse_inertia(BodySlot slot) const {
 template <class Motion>
 RotationPiece Tumbling<Motion>::way_back(BodySlot slot, const Quaterniond& as_it_moves, double t) const {
   const Body& body = *of_[slot];
-  return rotation_piece(body.inertia, body.state, t, of_axes(body.inertia, as_it_moves), error_ / 4);
+  const Quaterniond& free = body.state.time == t ? body.state.orientation : body.ahead;
+  return rotation_piece(body.inertia, body.state, t, free, of_axes(body.inertia, as_it_moves), error_ / 4);
 }
 
 /// One that does not lead back at all is off by a h^2 / 2 more at its end, four times the bulge: half as long, by a

@@ -105,7 +105,7 @@ class Tumbling {
   Eigen::Matrix3d inverse_inertia(BodySlot slot) const;
   void push(BodySlot slot, const Eigen::Vector3d& angular_impulse) { of_[slot]->state.momentum += angular_impulse; }
 
-  /// The piece that leads from this orientation back to the free rotation.
+  /// The piece that leads from this orientation back to the free rotation, at the time of meet() or of take_next().
   RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t) const;
   /// The body takes up that piece, or if it cannot turn back as fast a part of that turn, for half the time.
   void follow(BodySlot slot, const RotationPiece& piece, bool whole, double t);

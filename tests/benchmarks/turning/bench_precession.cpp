@@ -46,7 +46,7 @@ void pieces(const Kind& kind) {
       Quaterniond from = upright;
       double t = 0;
       while (t < 50) {
-        const RotationPiece piece = rotation_piece(inertia, state, t, from, error);
+        const RotationPiece piece = rotation_piece(inertia, state, t, from, from, error);
         turned += piece.angular_velocity.norm() * (piece.end - t);
         t = piece.end, from = piece.orientation;
         if (inertia.symmetry < 0) state.orientation = from, state.time = t;
@@ -74,7 +74,7 @@ void drift(const Kind& kind) {
     Quaterniond from = state.orientation;
     double t = 0;
     for (int i = 0; i < 1'000'000; ++i) {
-      const RotationPiece piece = rotation_piece(inertia, state, t, from, 1e-3);
+      const RotationPiece piece = rotation_piece(inertia, state, t, from, from, 1e-3);
       t = piece.end, from = piece.orientation;
       if (inertia.symmetry < 0) state.orientation = from, state.time = t;
     }

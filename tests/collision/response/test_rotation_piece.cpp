@@ -81,7 +81,8 @@ TEST_CASE("rotation piece: never off the free rotation by more than it may be") 
       Quaterniond from = here.orientation;
       double t = 0;
       for (int i = 0; i < 4; ++i) {
-        const RotationPiece piece = rotation_piece(inertia, here, t, from, bulge);
+        if (inertia.symmetry >= 0) REQUIRE(orientation_at(inertia, here, t).coeffs() == from.coeffs());
+        const RotationPiece piece = rotation_piece(inertia, here, t, from, from, bulge);
         REQUIRE(piece.end > t);
         REQUIRE(piece.angular_velocity.norm() * (piece.end - t) < longest_turn * 1.25);
         REQUIRE(farthest(inertia, here, from, t, piece) <= bulge + 1e-15);
@@ -92,7 +93,7 @@ TEST_CASE("rotation piece: never off the free rotation by more than it may be") 
       const double off = 4 * bulge;
       const Quaterniond elsewhere =
           Quaterniond(AngleAxisd(off, random_vector(random).normalized())) * state.orientation;
-      const RotationPiece back = rotation_piece(inertia, state, 0, elsewhere, bulge);
+      const RotationPiece back = rotation_piece(inertia, state, 0, state.orientation, elsewhere, bulge);
       REQUIRE(farthest(inertia, state, elsewhere, 0, back) <= off * (1 + 0x1p-6));
       REQUIRE(back.orientation.angularDistance(orientation_at(inertia, state, back.end)) < 1e-14);
     }
@@ -103,19 +104,19 @@ TEST_CASE("rotation piece: what turns about a principal axis needs one piece") {
   const PrincipalInertia inertia = principal_inertia(Vector3d(1, 2, 3).asDiagonal());
   const Quaterniond upright = Quaterniond::Identity();
   const RotationState state{Vector3d(0, 4, 0), upright, 3};
-  const RotationPiece piece = rotation_piece(inertia, state, 3, upright, 1e-3);
+  const RotationPiece piece = rotation_piece(inertia, state, 3, upright, upright, 1e-3);
   CHECK(piece.end == never);
   CHECK(piece.angular_velocity == Vector3d(0, 2, 0));
   // One that a contact has left turned otherwise goes back first.
   const Quaterniond elsewhere(AngleAxisd(1e-3, Vector3d::UnitX()));
-  CHECK(rotation_piece(inertia, state, 3, elsewhere, 1e-3).end == 3.5);
-  CHECK(rotation_piece(inertia, {Vector3d::Zero(), upright, 3}, 3, elsewhere, 1e-3).end == never);
+  CHECK(rotation_piece(inertia, state, 3, upright, elsewhere, 1e-3).end == 3.5);
+  CHECK(rotation_piece(inertia, {Vector3d::Zero(), upright, 3}, 3, upright, elsewhere, 1e-3).end == never);
 }
 
 TEST_CASE("rotation piece: a clock that is too coarse is refused") {
   const PrincipalInertia inertia = principal_inertia(Vector3d(1, 2, 3).asDiagonal());
   const RotationState state{Vector3d(0x1p60, 0x1p60, 0), Quaterniond::Identity(), 1};
-  CHECK_THROWS_AS(rotation_piece(inertia, state, 1, state.orientation, 1e-3), std::runtime_error);
+  CHECK_THROWS_AS(rotation_piece(inertia, state, 1, state.orientation, state.orientation, 1e-3), std::runtime_error);
 }
 
 }  // namespace test_rotation_piece
