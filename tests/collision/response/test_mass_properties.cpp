@@ -4,7 +4,6 @@
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
-#include "collision/shapes/solid_integrals.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -15,10 +14,8 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <set>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace test_mass_properties {
@@ -439,19 +436,5 @@ TEST_CASE("What has no mass properties is refused in one line", "[mass propertie
 }
 
 }  // namespace
-
-TEST_CASE("A mesh is integrated once, by the first of several threads, or refused each time", "[mass properties]") {
-  const std::vector<Vector3d> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  const auto closed =
-      std::make_shared<const Mesh>(vertices, std::vector<Mesh::Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
-  std::vector<const SolidIntegrals*> seen(4);
-  std::vector<std::thread> threads;
-  for (const SolidIntegrals*& each : seen) threads.emplace_back([&] { each = &closed->solid(); });
-  for (std::thread& thread : threads) thread.join();
-  CHECK(std::set(seen.begin(), seen.end()).size() == 1);
-  CHECK((closed->solid().volume / 6.0).high == 1.0 / 6);
-  const Mesh open(vertices, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}});
-  for (int i = 0; i < 3; ++i) CHECK_THROWS_WITH(open.solid(), Catch::Contains("is open: edge 0-2 belongs to one"));
-}
 
 }  // namespace test_mass_properties
