@@ -17,29 +17,56 @@
 
 namespace kds::collision {
 
+/// Calls take(x) for points of which the convex hull holds the shape: those of a hull, the corners of the oriented box
+/// around a mesh, in its axes rounded to floats, which are off by 2^-20 of its size. False if there are none.
+template <class Take>
+bool take_corners(const PlacedShape& shape, const Take& take) {
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+    for (const Eigen::Vector3d& x : hull->polytope->points()) take(x);
+    return true;
+  }
+  if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) {
+    const ObbNode& box = mesh->mesh->tree().nodes()[0];
+    const double unit = mesh->mesh->tree().unit() * mesh->scale;
+    for (int corner = 0; corner < 8; ++corner) {
+      Eigen::Vector3d x;
+      for (std::size_t d = 0; d < 3; ++d) {
+        double sum = box.centre[d];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double along = static_cast<double>(box.axes[d][k]) * static_cast<double>(box.half_extents[k]);
+          sum += corner >> k & 1 ? along : -along;
+        }
+        x[static_cast<Eigen::Index>(d)] = unit * sum;
+      }
+      take(x);
+    }
+    return true;
+  }
+  if (!shape.parts) return false;
+  return std::all_of(shape.parts->begin(), shape.parts->end(),
+                     [&](const PlacedShape& part) { return take_corners(part, take); });
+}
+
 /// The half extents of a box along the axes of the world that holds a body however far it turns, rounded outward.
 ///
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
 /// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of
 /// the body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far
-/// as it does as it is. A capsule is a box without width, grown by its radius; a compound of hulls is all their points.
-/// Of other shapes it is the box around the bounding ball.
+/// as it does as it is. A capsule is a box without width, grown by its radius; a mesh is the oriented box around it; a
+/// compound is all that its parts are. Of other shapes it is the box around the bounding ball.
 ///
 /// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
-/// 2^-40 of the bounding radius is charged.
+/// 2^-40 of the bounding radius is charged, and 2^-17 of it where there are meshes.
 template <int Degree>
 Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;
   Eigen::Vector3d edges = Eigen::Vector3d::Zero();  // half of the box that the body is
   double grown_by = 0;
-  const bool of_hulls = shape.parts && !has_mesh(shape.shape);
   if (const auto* const box = std::get_if<Box>(&shape.shape)) {
     edges = box->half_extents;
   } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
     edges = Eigen::Vector3d(0, 0, capsule->half_length);
     grown_by = capsule->radius;
-  } else if (!of_hulls) {
-    return Eigen::Vector3d::Constant(radius);
   }
   const double rate = norm(motion.angular_velocity);
   const bool still = motion.spin().still();
@@ -59,10 +86,11 @@ Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificate
           std::max(half_extents[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
     }
   };
-  if (of_hulls) {
-    for (const PlacedShape& part : *shape.parts) {
-      for (const Eigen::Vector3d& x : std::get<ConvexHull>(part.shape).polytope->points()) take(turn(x));
+  if (edges == Eigen::Vector3d::Zero()) {
+    if (!take_corners(shape, [&](const Eigen::Vector3d& x) { take(turn(x)); })) {
+      return Eigen::Vector3d::Constant(radius);
     }
+    if (has_mesh(shape.shape)) grown_by = 0x1p-17 * radius;
   } else {
     std::array<Eigen::Vector3d, 3> half;
     for (int k = 0; k < 3; ++k) half[static_cast<std::size_t>(k)] = edges[k] * turn(Eigen::Vector3d::Unit(k));
