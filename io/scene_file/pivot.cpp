@@ -1,9 +1,11 @@
 #include "io/scene_file/pivot.hpp"
 
+#include "collision/shapes/compound.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/polytope.hpp"
 
-#include <cstddef>
-#include <cstdint>
+#include <exception>
 #include <memory>
 #include <string>
 #include <utility>
@@ -13,38 +15,47 @@
 namespace kds::io {
 namespace {
 
+using namespace kds::collision;
 using Eigen::Vector3d;
-using kds::collision::Mesh;
-
-struct Surface {
-  std::vector<Vector3d> vertices;
-  std::vector<Mesh::Triangle> triangles;
-};
 
 /// Vertex i is on the positive side of axis d where bit d of i is set.
-Surface surface_of(const kds::collision::Box& box) {
-  Surface surface;
+Shape moved(const Box& box, const Vector3d& by) {
+  std::vector<Vector3d> corners;
   for (unsigned i = 0; i < 8; ++i) {
-    Vector3d corner;
+    Vector3d corner = box.half_extents;
     for (unsigned d = 0; d < 3; ++d) {
-      const double half = box.half_extents[static_cast<Eigen::Index>(d)];
-      corner[static_cast<Eigen::Index>(d)] = i >> d & 1 ? half : -half;
+      if (!(i >> d & 1)) corner[static_cast<Eigen::Index>(d)] *= -1;
     }
-    surface.vertices.push_back(corner);
+    corners.push_back(corner + by);
   }
-  for (std::uint32_t d = 0; d < 3; ++d) {
-    const std::uint32_t u = 1u << (d + 1) % 3, v = 1u << (d + 2) % 3, far = 1u << d;
-    surface.triangles.insert(surface.triangles.end(), {{0, v, u | v}, {0, u | v, u}});  // counterclockwise from outside
-    surface.triangles.insert(surface.triangles.end(), {{far, far | u, far | u | v}, {far, far | u | v, far | v}});
-  }
-  return surface;
+  return convex_hull(std::move(corners));
 }
 
-Surface surface_of(const kds::collision::MeshShape& shape) {
-  Surface surface;
-  for (const Vector3d& v : shape.mesh->vertices()) surface.vertices.push_back(shape.scale * v);
-  surface.triangles.assign(shape.mesh->triangles().begin(), shape.mesh->triangles().end());
-  return surface;
+Shape moved(const ConvexHull& hull, const Vector3d& by) {
+  std::vector<Vector3d> points(hull.polytope->points().begin(), hull.polytope->points().end());
+  for (Vector3d& x : points) x += by;
+  return convex_hull(std::move(points));
+}
+
+Shape moved(const MeshShape& shape, const Vector3d& by) {
+  std::vector<Vector3d> vertices;
+  for (const Vector3d& v : shape.mesh->vertices()) vertices.emplace_back(shape.scale * v + by);
+  const auto triangles = shape.mesh->triangles();
+  return MeshShape{std::make_shared<const Mesh>(std::move(vertices),
+                                                std::vector<Mesh::Triangle>(triangles.begin(), triangles.end()))};
+}
+
+Shape moved(const Compound& compound, const Vector3d& by) {
+  auto parts = kds::collision::detail::points_of_parts(compound);
+  for (auto& part : parts) {
+    for (Vector3d& x : part.points) x += by;
+  }
+  return kds::collision::detail::compound_of_points(std::move(parts));
+}
+
+template <class Other>
+std::optional<Shape> moved(const Other&, const Vector3d&) {
+  return std::nullopt;
 }
 
 }  // namespace
@@ -62,23 +73,17 @@ std::optional<Vector3d> read_pivot(const JsonNode& motion) {
   return pivot.isZero(0) ? std::nullopt : std::optional(pivot);
 }
 
-kds::collision::Shape about_pivot(const kds::collision::Shape& shape, const Vector3d& pivot, const JsonNode& node) {
-  Surface surface;
-  if (const auto* box = std::get_if<kds::collision::Box>(&shape)) {
-    surface = surface_of(*box);
-  } else if (const auto* mesh = std::get_if<kds::collision::MeshShape>(&shape)) {
-    surface = surface_of(*mesh);
-  } else {
-    node.fail(std::string("a ") + kind_name(shape) +
-              " turns about its centre alone: boxes and meshes may have a pivot");
-  }
-  for (Vector3d& v : surface.vertices) v -= pivot;
+Shape about_pivot(const Shape& shape, const Vector3d& pivot, const JsonNode& node) {
+  std::optional<Shape> about;
   try {
-    return kds::collision::MeshShape{
-        std::make_shared<const Mesh>(std::move(surface.vertices), std::move(surface.triangles))};
-  } catch (const kds::collision::InvalidMesh& error) {
-    node.fail(std::string("the shape, placed about it, is no mesh: ") + error.what());
+    about = std::visit([&](const auto& each) { return std::optional<Shape>(moved(each, -pivot)); }, shape);
+    if (about) place(*about, Eigen::Quaterniond::Identity());
+  } catch (const std::exception& error) {
+    node.fail(std::string("the shape cannot be placed about it: ") + error.what());
   }
+  if (about) return *about;
+  node.fail(std::string("a ") + kind_name(shape) +
+            " turns about its centre alone: boxes, hulls, compounds and meshes may have a pivot");
 }
 
 }  // namespace kds::io

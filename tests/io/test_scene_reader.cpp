@@ -192,11 +192,9 @@ TEST_CASE("scene reader: a shape is placed about its pivot") {
   };
   const Scene scene = read(R"("fixed": true, )", "elastic");
   CHECK(scene.turning);
-  REQUIRE(scene.meshes.size() == 1);
-  const auto mesh = mesh_of(scene.bodies[0].shape);
-  CHECK(scene.meshes[0].mesh == mesh);
-  CHECK(mesh->vertices()[0] == Eigen::Vector3d(0, -2.5, -3));
-  CHECK(mesh->vertices()[7] == Eigen::Vector3d(2, 1.5, 3));
+  const auto& hull = *std::get<kds::collision::ConvexHull>(scene.bodies[0].shape).polytope;
+  CHECK(hull.points()[0] == Eigen::Vector3d(0, -2.5, -3));
+  CHECK(hull.points()[7] == Eigen::Vector3d(2, 1.5, 3));
   CHECK(scene.bodies[0].motion[0].path.coefficients[0] == Eigen::Vector3d(5, 0, 0));
   const auto solid = kds::collision::mass_properties(scene.bodies[0].shape, 1);  // closed, and not inside out
   CHECK((solid.centre - Eigen::Vector3d(1, -0.5, 0)).norm() < 1e-15);
@@ -205,6 +203,21 @@ TEST_CASE("scene reader: a shape is placed about its pivot") {
   CHECK_THROWS_WITH(read("", "elastic"),
                     "scene.json: bodies[0].motion[0].pivot: a body that contacts move turns about "
                     "its centre of mass: make it fixed, or a sensor");
+}
+
+TEST_CASE("scene reader: hulls, compounds and meshes are placed about their pivots") {
+  const auto centre = [](const std::string& shape) {
+    const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "bodies": [{"name": "a", "shape": )" + shape +
+                                        R"(, "motion": [{"start": 0, "position": [[5,0,0]], "pivot": [-1,0.5,0]}]}]})",
+                                    "scene.json");
+    return kds::collision::mass_properties(scene.bodies[0].shape, 1).centre;
+  };
+  const std::string tetrahedron = R"({"hull": {"points": [[-1,-1,-1],[3,-1,-1],[-1,3,-1],[-1,-1,3]]}})";
+  CHECK((centre(tetrahedron) - Eigen::Vector3d(1, -0.5, 0)).norm() < 1e-15);
+  CHECK((centre(R"({"compound": {"parts": [{"shape": )" + tetrahedron + R"(, "position": [1, 0, 0]},
+                                 {"shape": {"box": {"half_extents": [1,1,1]}}, "position": [-1, 0, 0]}]}})") -
+         Eigen::Vector3d(1 + (32.0 / 3 - 8) / (32.0 / 3 + 8), -0.5, 0))
+            .norm() < 1e-14);
 }
 
 TEST_CASE("scene reader: friction is the scene's where a body of a scene that turns has none of its own") {

@@ -188,7 +188,8 @@ TEST_CASE("scene reader: each bad value is named with its place") {
       {"/bodies/0/motion/0/angular_velocity", "[0,0,1e31]",
        "bodies[0].motion[0].angular_velocity[2]: must be at most 1e+30 in magnitude"},
       {"/bodies/0/motion/0/pivot", "[1,0,0]",
-       "bodies[0].motion[0].pivot: a sphere turns about its centre alone: boxes and meshes may have a pivot"},
+       "bodies[0].motion[0].pivot: a sphere turns about its centre alone: boxes, hulls, compounds and meshes "
+       "may have a pivot"},
       {"/bodies/1/motion/0/pivot", "[1,0]", "bodies[1].motion[0].pivot: must be an array of 3 numbers"},
       {"/bodies/2/motion/0/pivot", "[1,0,0]", "bodies[2].motion[1]: all pieces of a motion must have the same pivot"},
       {"/bodies/2/motion/1/pivot", "[1,0,0]",
