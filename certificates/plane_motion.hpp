@@ -2,8 +2,10 @@
 #pragma once
 
 #include "kds/bounded.hpp"
+#include "kds/hermite.hpp"
 #include "kds/motion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -17,6 +19,37 @@ struct PlaneMotion {
 
   std::array<Polynomial<Degree>, 2> coordinate;  ///< length, length/s, ...; of degree 2: half the acceleration
   double start = 0;                              ///< s
+
+  /// From place p0 with velocity v0 at time t0 to place p1 with velocity v1 at t1, by hermite_cubic(), which says how
+  /// far it is off at t1: a piece of a trajectory that is given by places and velocities. It starts at t0 and goes on
+  /// after t1. Throws std::invalid_argument unless t0 < t1 and all is finite.
+  static PlaneMotion cubic(const std::array<double, 2>& p0, const std::array<double, 2>& v0,
+                           const std::array<double, 2>& p1, const std::array<double, 2>& v1, double t0,
+                           double t1) requires(Degree >= 3) {
+    const double duration = kds::detail::duration_of_piece("PlaneMotion::cubic", t0, t1);
+    PlaneMotion motion{{}, t0};
+    for (std::size_t d = 0; d < 2; ++d) {
+      const auto c = hermite_cubic(p0[d], v0[d], p1[d], v1[d], duration);
+      std::copy(c.begin(), c.end(), motion.coordinate[d].c.begin());
+    }
+    kds::detail::require_finite("PlaneMotion::cubic", motion);
+    return motion;
+  }
+
+  /// The same with accelerations a0 and a1 (not halves) too, by hermite_quintic().
+  static PlaneMotion quintic(const std::array<double, 2>& p0, const std::array<double, 2>& v0,
+                             const std::array<double, 2>& a0, const std::array<double, 2>& p1,
+                             const std::array<double, 2>& v1, const std::array<double, 2>& a1, double t0,
+                             double t1) requires(Degree >= 5) {
+    const double duration = kds::detail::duration_of_piece("PlaneMotion::quintic", t0, t1);
+    PlaneMotion motion{{}, t0};
+    for (std::size_t d = 0; d < 2; ++d) {
+      const auto c = hermite_quintic(p0[d], v0[d], a0[d], p1[d], v1[d], a1[d], duration);
+      std::copy(c.begin(), c.end(), motion.coordinate[d].c.begin());
+    }
+    kds::detail::require_finite("PlaneMotion::quintic", motion);
+    return motion;
+  }
 
   Motion<Degree> axis(int d) const { return {coordinate[static_cast<std::size_t>(d)], start}; }
   /// x and y at t, rounded.

@@ -1,6 +1,7 @@
 // Motion of a point in space: a vector polynomial in the time since its own start.
 #pragma once
 
+#include "kds/hermite.hpp"
 #include "kds/motion.hpp"
 
 #include <Eigen/Core>
@@ -50,23 +51,7 @@ struct std::tuple_element<I, kds::certificates::PointCoefficients<Degree>> {
 
 namespace kds::certificates {
 
-namespace detail {
-
-/// The length of a piece of a trajectory, s. Throws std::invalid_argument if it is not positive and finite.
-inline double duration_of_piece(const char* function, double t0, double t1) {
-  const double duration = t1 - t0;
-  if (duration > 0 && std::isfinite(duration) && std::isfinite(t0)) return duration;
-  throw std::invalid_argument(std::string(function) + ": from " + std::to_string(t0) + " to " + std::to_string(t1) +
-                              " is no stretch of time");
-}
-
-template <class Motion>
-void require_finite(const char* function, const Motion& motion) {
-  if (motion.finite()) return;
-  throw std::invalid_argument(std::string(function) + ": a coefficient is not finite");
-}
-
-}  // namespace detail
+namespace detail {}  // namespace detail
 
 /// x(t) = c[0] + c[1] (t - start) + c[2] (t - start)^2: position, velocity, *half* the acceleration.
 template <int Degree>
@@ -99,14 +84,13 @@ struct PointMotion {
   /// jump.
   static PointMotion cubic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& p1,
                            const Eigen::Vector3d& v1, double t0, double t1) requires(Degree >= 3) {
-    const double duration = detail::duration_of_piece("PointMotion::cubic", t0, t1);
-    const Eigen::Vector3d way = p1 - p0;
-    const Eigen::Vector3d w0 = v0 * duration;
-    const Eigen::Vector3d w1 = v1 * duration;
-    const PointMotion motion{{p0, v0, (3 * way - (2 * w0 + w1)) / duration / duration,
-                              ((w0 + w1) - 2 * way) / duration / duration / duration},
-                             t0};
-    detail::require_finite("PointMotion::cubic", motion);
+    const double duration = kds::detail::duration_of_piece("PointMotion::cubic", t0, t1);
+    PointMotion motion{{}, t0};
+    for (int d = 0; d < 3; ++d) {
+      const auto c = hermite_cubic(p0[d], v0[d], p1[d], v1[d], duration);
+      for (std::size_t i = 0; i < c.size(); ++i) motion.coefficients[i][d] = c[i];
+    }
+    kds::detail::require_finite("PointMotion::cubic", motion);
     return motion;
   }
 
@@ -118,21 +102,13 @@ struct PointMotion {
   static PointMotion quintic(const Eigen::Vector3d& p0, const Eigen::Vector3d& v0, const Eigen::Vector3d& a0,
                              const Eigen::Vector3d& p1, const Eigen::Vector3d& v1, const Eigen::Vector3d& a1, double t0,
                              double t1) requires(Degree >= 5) {
-    const double duration = detail::duration_of_piece("PointMotion::quintic", t0, t1);
-    // Position, velocity and acceleration at t1 minus those of the parabola through the data at t0, times T^k.
-    const Eigen::Vector3d bend = a0 * duration * duration;
-    const Eigen::Vector3d way = p1 - p0 - v0 * duration - 0.5 * bend;
-    const Eigen::Vector3d rate = (v1 - v0) * duration - bend;
-    const Eigen::Vector3d turn = a1 * duration * duration - bend;
-    const Eigen::Vector3d c3 = 10 * way - 4 * rate + 0.5 * turn;
-    const Eigen::Vector3d c4 = 7 * rate - 15 * way - turn;
-    const Eigen::Vector3d c5 = 6 * way - 3 * rate + 0.5 * turn;
-    const auto over = [duration](Eigen::Vector3d c, int power) {
-      for (int i = 0; i < power; ++i) c /= duration;
-      return c;
-    };
-    const PointMotion motion{{p0, v0, Eigen::Vector3d(0.5 * a0), over(c3, 3), over(c4, 4), over(c5, 5)}, t0};
-    detail::require_finite("PointMotion::quintic", motion);
+    const double duration = kds::detail::duration_of_piece("PointMotion::quintic", t0, t1);
+    PointMotion motion{{}, t0};
+    for (int d = 0; d < 3; ++d) {
+      const auto c = hermite_quintic(p0[d], v0[d], a0[d], p1[d], v1[d], a1[d], duration);
+      for (std::size_t i = 0; i < c.size(); ++i) motion.coefficients[i][d] = c[i];
+    }
+    kds::detail::require_finite("PointMotion::quintic", motion);
     return motion;
   }
 

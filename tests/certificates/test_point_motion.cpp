@@ -1,3 +1,4 @@
+#include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
 #include "tests/certificates/check_certificate.hpp"
 
@@ -14,6 +15,7 @@ namespace {
 
 using namespace kds;
 using namespace kds::tests;
+using certificates::PlaneMotion;
 using certificates::PointMotion;
 using certificates::relative_motion;
 using Eigen::Vector3d;
@@ -125,6 +127,14 @@ TEST_CASE("cubic pieces go where they are told, at the velocities that they are 
     CHECK(off(quintic, 0, t1, p1) < of_quintic);
     CHECK(off(quintic, 1, t1, v1) < 5 * of_quintic / T);
     CHECK(off(quintic, 2, t1, a1) < 20 * of_quintic / (T * T));
+    // In the plane the same coordinates.
+    const auto flat = [](const Vector3d& v) { return std::array{v[0], v[1]}; };
+    const auto on_plane = PlaneMotion<3>::cubic(flat(p0), flat(v0), flat(p1), flat(v1), t0, t1);
+    const auto bent = PlaneMotion<5>::quintic(flat(p0), flat(v0), flat(a0), flat(p1), flat(v1), flat(a1), t0, t1);
+    for (int d = 0; d < 2; ++d) {
+      CHECK(on_plane.axis(d) == cubic.axis(d));
+      CHECK(bent.axis(d) == quintic.axis(d));
+    }
   }
   // What doubles hold is exact: half a second, halves of lengths.
   const auto swing = PointMotion<3>::cubic({0, 0, 0}, {0, 0, 0}, {2, 0, 1}, {0, 0, 0}, 1, 3);
@@ -141,6 +151,9 @@ TEST_CASE("a piece of a trajectory lasts some time, and is finite", "[point_moti
     CHECK_THROWS_WITH(PointMotion<5>::quintic(o, o, o, o, o, o, 1, end), Catch::StartsWith("PointMotion::quintic"));
   }
   CHECK_THROWS_WITH(PointMotion<3>::cubic(o, far, o, far, 0, 1e30), "PointMotion::cubic: a coefficient is not finite");
+  CHECK_THROWS_WITH(PlaneMotion<3>::cubic({}, {}, {}, {}, 1, 1), Catch::StartsWith("PlaneMotion::cubic: from 1.0"));
+  CHECK_THROWS_WITH(PlaneMotion<5>::quintic({}, {infinity, 0}, {}, {}, {}, {}, 0, 1),
+                    "PlaneMotion::quintic: a coefficient is not finite");
 }
 
 TEST_CASE("an axis of a path is the motion of one coordinate", "[point_motion]") {

@@ -30,7 +30,7 @@ using testing::try_rule;
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("a kinetic Delaunay triangulation is Delaunay, exactly", "[delaunay]", ((int Degree), Degree), 1,
-                       2) {
+                       2, 3) {
   std::size_t events = 0;
   for (const Kind kind : all_kinds) {
     for (std::uint64_t seed = 800; seed < (Degree == 1 ? 803u : 801u); ++seed) {
