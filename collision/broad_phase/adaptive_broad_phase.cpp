@@ -43,11 +43,16 @@ void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, c
 }
 
 template <int Degree>
+void AdaptiveBroadPhase<Degree>::make_grid(double now) {
+  grid_ = std::make_unique<KineticGrid<Degree>>(box_of_, threads_, tuning_.grid);
+  grid_->extend_horizon(now, horizon_);
+}
+
+template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listener) {
   std::vector<Entry> entries;
   few_.visit([&](BodySlot id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
-  grid_ = std::make_unique<KineticGrid<Degree>>(threads_, tuning_.grid);
-  grid_->extend_horizon(now, horizon_);
+  make_grid(now);
   if (entries.empty()) return;
   NoListener known(listener);
   grid_->insert(entries, now, known);
@@ -57,8 +62,13 @@ void AdaptiveBroadPhase<Degree>::change_to_grid(double now, PairListener& listen
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listener) {
+  std::vector<KineticBox<Degree>> boxes;
+  boxes.reserve(grid_->size());
   std::vector<Entry> entries;
-  grid_->visit([&](BodySlot id, const KineticBox<Degree>& box) { entries.push_back({id, &box}); });
+  grid_->visit([&](BodySlot id) {
+    boxes.push_back(box_of_(id));
+    entries.push_back({id, &boxes.back()});
+  });
   NoListener known(listener);
   few_.extend_horizon(now, horizon_);
   few_.insert(entries, now, known);
@@ -69,10 +79,7 @@ void AdaptiveBroadPhase<Degree>::change_to_few(double now, PairListener& listene
 
 template <int Degree>
 void AdaptiveBroadPhase<Degree>::expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) {
-  if (!grid_ && few_.size() == 0 && bodies > tuning_.most_for_few) {
-    grid_ = std::make_unique<KineticGrid<Degree>>(threads_, tuning_.grid);
-    grid_->extend_horizon(now, horizon_);
-  }
+  if (!grid_ && few_.size() == 0 && bodies > tuning_.most_for_few) make_grid(now);
   if (grid_) grid_->expect(bodies, end, some, now);
 }
 

@@ -1,6 +1,7 @@
 // The default broad phase: it chooses between two by the number of bodies, and may change during a run.
 #pragma once
 
+#include "collision/broad_phase/box_of.hpp"
 #include "collision/broad_phase/few_boxes.hpp"
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "collision/broad_phase/tuning.hpp"
@@ -8,6 +9,7 @@
 
 #include <memory>
 #include <string_view>
+#include <utility>
 
 namespace kds::collision {
 
@@ -23,8 +25,8 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// `threads`: see KineticGrid.
-  explicit AdaptiveBroadPhase(std::size_t threads = 1, const AdaptiveTuning& tuning = {})
-      : tuning_(tuning), few_(tuning.few), threads_(threads) {
+  explicit AdaptiveBroadPhase(BoxOf<Degree> box_of, std::size_t threads = 1, const AdaptiveTuning& tuning = {})
+      : box_of_(std::move(box_of)), tuning_(tuning), few_(tuning.few), threads_(threads) {
     check(tuning);
   }
 
@@ -50,12 +52,14 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
 
  private:
   const BroadPhase<Degree>& chosen() const { return grid_ ? static_cast<const BroadPhase<Degree>&>(*grid_) : few_; }
+  void make_grid(double now);
   void change_to_grid(double now, PairListener& listener);
   void change_to_few(double now, PairListener& listener);
   template <class From, class To>
   static void report_changes(std::span<const Entry> bodies, const From& from, const To& to, double now,
                              PairListener& listener);
 
+  BoxOf<Degree> box_of_;
   AdaptiveTuning tuning_;
   FewBoxes<Degree> few_;                       ///< has all bodies while there is no grid
   std::unique_ptr<KineticGrid<Degree>> grid_;  ///< otherwise has them

@@ -27,8 +27,8 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
   Exponent level = level_for(extent);
   // A box that has become a little smaller stays at its level.
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
-  const Item to{BoxBounds(box), kept_rounding(rounding), 0, level, false, items_[id].kind, slant != nullptr};
-  if (level == before && !slant && !items_[id].slanted) return move(id, to, changes, alone);
+  const Item to{BoxBounds(box), kept_rounding(rounding), 0, no_slant, level, false, items_[id].kind};
+  if (level == before && !slant && !slanted(id)) return move(id, to, changes, alone);
   const std::size_t levels = levels_.size();
   use_level(level);
   if (levels_.size() > levels) restart_guests();
@@ -36,6 +36,22 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
   ++size_;
   set_item(id, to, slant);
   enter(id, changes);
+}
+
+std::uint32_t BoxGrid::place_for_slant() {
+  if (free_slants_.empty()) {
+    slants_.emplace_back();
+    return static_cast<std::uint32_t>(slants_.size() - 1);
+  }
+  const std::uint32_t place = free_slants_.back();
+  free_slants_.pop_back();
+  return place;
+}
+
+void BoxGrid::drop_slant(Id id) {
+  if (!slanted(id)) return;
+  free_slants_.push_back(items_[id].slant);
+  items_[id].slant = no_slant;
 }
 
 /// Cells of two levels may share a bucket, so a box may be found twice, or find itself.
@@ -96,7 +112,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
     const bool native = level.exponent == item.level;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_finer(level, item, id, kind, found);
+      if (native) search_finer(level, item, kind, found);
     });
     if (native) {
       level.idle = 0;
@@ -192,7 +208,7 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
     if (alone) continue;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_finer(level, item, id, kind, found);
+      if (native) search_finer(level, item, kind, found);
     });
   }
   if (alone) return;
@@ -204,6 +220,7 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
 void BoxGrid::remove(Id id, Changes& changes, bool alone) {
   leave(id, changes, alone);
   --size_;
+  drop_slant(id);
   items_[id].level = absent;
 }
 

@@ -90,6 +90,8 @@ class BoxGrid {
   }
   /// The box in the form that is compared. Precondition: contains(id).
   const BoxBounds& bounds(Id id) const { return items_[id].bounds; }
+  /// The radius by which its edges are rounded, as it is compared (kept_rounding()). Precondition: contains(id).
+  float rounding(Id id) const { return items_[id].rounding; }
   /// One past the greatest number that there has been.
   Id end() const { return static_cast<Id>(items_.size()); }
 
@@ -142,7 +144,7 @@ class BoxGrid {
   }
 
   /// Whether only a part of the box counts. Precondition: contains(id).
-  bool slanted(Id id) const { return items_[id].slanted; }
+  bool slanted(Id id) const { return items_[id].slant != no_slant; }
 
   /// For inserting many into an empty grid in an order that suits the cache: first all are announced, then each one
   /// enters. No other function may be called in between. Precondition: id below the end reserved; none has entered.
@@ -183,6 +185,7 @@ class BoxGrid {
  private:
   using Exponent = std::int16_t;
   static constexpr Exponent absent = std::numeric_limits<Exponent>::min();
+  static constexpr std::uint32_t no_slant = std::numeric_limits<std::uint32_t>::max();
   static constexpr int least = -1000;  ///< exponent; the scale of such cells does not overflow
   static constexpr int most = 1023;    ///< exponent; all space is a few cells of this size
 
@@ -190,11 +193,11 @@ class BoxGrid {
   struct alignas(64) Item {
     BoxBounds bounds;
     float rounding = 0;
-    std::uint32_t reported = 0;  ///< the last search that has reported it
+    std::uint32_t reported = 0;      ///< the last search that has reported it
+    std::uint32_t slant = no_slant;  ///< its place in slants_
     Exponent level = absent;
     bool entered = false;  ///< is in the cells; false while it is only announced
     Kind kind = 0;
-    bool slanted = false;
   };
 
   /// The natives or the guests of a level that are of one kind, and bounds for searches of them.
@@ -248,23 +251,29 @@ class BoxGrid {
   void begin_search(Id id);
   bool report_once(Id id);
   bool meets(Kind kind, Id id) const { return meetings_[kind] >> items_[id].kind & 1; }
-  const BoxSlant* slant(Id id) const { return items_[id].slanted ? &slants_[id] : nullptr; }
+  const BoxSlant* slant(Id id) const { return slanted(id) ? &slants_[items_[id].slant] : nullptr; }
   /// Whether the slants of two boxes keep them apart; the first is given by its bounds and its slant.
   bool apart(const BoxBounds& bounds, const BoxSlant* slant, Id other) const {
-    return (slant && slant->apart(items_[other].bounds)) || (items_[other].slanted && slants_[other].apart(bounds));
+    return (slant && slant->apart(items_[other].bounds)) ||
+           (slanted(other) && slants_[items_[other].slant].apart(bounds));
   }
   template <bool slants>
   void compare(const Item& from, const Item& to, const CellTable::Found& found, Changes& changes);
   template <bool slants>
   void take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping);
   void set_item(Id id, const Item& item, const BoxSlant* slant) {
+    std::uint32_t place = no_slant;
+    if (slant) {
+      place = slanted(id) ? items_[id].slant : place_for_slant();
+      slants_[place] = *slant;
+    } else {
+      drop_slant(id);
+    }
     items_[id] = item;
-    if (slant) set_slant(id, *slant);
+    items_[id].slant = place;
   }
-  void set_slant(Id id, const BoxSlant& slant) {
-    if (slants_.size() < items_.size()) slants_.resize(items_.size());
-    slants_[id] = slant;
-  }
+  std::uint32_t place_for_slant();
+  void drop_slant(Id id);
   void leave(Id id, Changes& changes, bool alone);
   void move(Id id, const Item& to, Changes& changes, bool alone);
   void put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
@@ -289,13 +298,14 @@ class BoxGrid {
   static void limit(CellTable::Block& block, std::size_t d, std::int64_t from, std::int64_t to, std::int64_t low,
                     std::int64_t high);
   void count_crowd(std::size_t chained, std::size_t cells);
-  void search_finer(const Level& level, const Item& item, Id id, Kind kind, CellTable::Found& found);
+  void search_finer(const Level& level, const Item& item, Kind kind, CellTable::Found& found);
   void follow(const Way& way, Kind kind, CellTable::Found& found);
 
   CellTuning tuning_;
-  LargeVector<Item> items_;       // by id
-  LargeVector<BoxSlant> slants_;  // by id; empty as long as there has been none
-  std::vector<Level> levels_;     // finest first
+  LargeVector<Item> items_;                 // by id
+  LargeVector<BoxSlant> slants_;            // by Item::slant; empty as long as there has been none
+  std::vector<std::uint32_t> free_slants_;  // places of no box
+  std::vector<Level> levels_;               // finest first
   CellTable natives_;
   CellTable guests_;
   std::uint32_t search_ = 0;

@@ -252,10 +252,10 @@ struct BoxGrid::Way {
 
 /// Finds the boxes of finer levels. The guests of a large cell are many, and a prism meets few of them; it is followed
 /// through the cells of the natives where that costs less.
-void BoxGrid::search_finer(const Level& level, const Item& item, Id id, Kind kind, CellTable::Found& found) {
+void BoxGrid::search_finer(const Level& level, const Item& item, Kind kind, CellTable::Found& found) {
   const Population& guests = level.of[kind].guests;
   if (guests.count == 0) return;
-  if (item.slanted) {
+  if (item.slant != no_slant) {
     boost::container::small_vector<Way, 4> ways;
     std::int64_t pieces = 0;
     bool fits = true;
@@ -263,7 +263,7 @@ void BoxGrid::search_finer(const Level& level, const Item& item, Id id, Kind kin
       if (finer.exponent >= level.exponent) break;
       const Population& natives = finer.of[kind].natives;
       if (natives.count == 0) continue;
-      ways.emplace_back(slants_[id], finer, natives, item);
+      ways.emplace_back(slants_[item.slant], finer, natives, item);
       pieces += ways.back().pieces();
       fits = fits && ways.back().fits();
     }

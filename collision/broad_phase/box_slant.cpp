@@ -6,14 +6,10 @@
 namespace kds::collision {
 
 BoxSlant::BoxSlant(const StaticBox& box, const Eigen::Vector3d& velocity) {
-  const Eigen::Vector3d speeds = velocity.cwiseAbs();
-  main_ = speeds[1] > speeds[0] ? 1 : 0;
-  if (speeds[2] > speeds[static_cast<int>(main_)]) main_ = 2;
-  const double fastest = speeds[static_cast<int>(main_)];
+  // The quotient of two doubles is 1 in magnitude only if they are equal in magnitude: main_axis() is exact.
+  const double fastest = velocity.cwiseAbs().maxCoeff();
   for (int d = 0; d < 3; ++d) {
-    const double along = velocity[d] / fastest;
-    along_[static_cast<std::size_t>(d)] = {along, std::abs(along), box.min[d] + box.max[d], box.max[d] - box.min[d],
-                                           std::max(std::abs(box.min[d]), std::abs(box.max[d]))};
+    along_[static_cast<std::size_t>(d)] = {velocity[d] / fastest, box.min[d] + box.max[d], box.max[d] - box.min[d]};
   }
 }
 
@@ -24,13 +20,13 @@ bool BoxSlant::pays(const StaticBox& box, const Eigen::Vector3d& velocity) {
 }
 
 inline BoxSlant::Side BoxSlant::side(std::size_t d, double min, double minus_max) const {
-  const double farthest = along_[d].farthest + std::max(std::abs(min), std::abs(minus_max));
+  const double farthest = along_[d].farthest() + std::max(std::abs(min), std::abs(minus_max));
   return {min - minus_max - along_[d].twice_centre, along_[d].extent - (min + minus_max) + 0x1p-47 * farthest};
 }
 
 inline bool BoxSlant::apart(std::size_t i, const Side& at_i, std::size_t j, const Side& at_j) const {
   return std::abs(along_[j].velocity * at_i.distance - along_[i].velocity * at_j.distance) >
-         along_[j].speed * at_i.reach + along_[i].speed * at_j.reach;
+         along_[j].speed() * at_i.reach + along_[i].speed() * at_j.reach;
 }
 
 bool BoxSlant::apart(const BoxBounds& other) const {

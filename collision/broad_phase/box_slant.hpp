@@ -34,28 +34,30 @@ class BoxSlant {
   /// speed. The margin is twice that.
   bool apart(const BoxBounds& other) const;
 
-  /// The axis of the greatest speed.
-  std::size_t main_axis() const { return main_; }
+  /// The first axis of the greatest speed.
+  std::size_t main_axis() const { return along_[0].speed() == 1 ? 0 : (along_[1].speed() == 1 ? 1 : 2); }
   /// Where the prism is along another axis d: at most `half` from at + rate x, for x along the main axis, up to
   /// rounding.
   struct Line {
     double at, rate, half;
   };
   Line line(std::size_t d) const {
-    const Along& main = along_[main_];
+    const Along& main = along_[main_axis()];
     const double rate = along_[d].velocity * main.velocity;  // that of the main axis is 1 or -1
     return {0.5 * (along_[d].twice_centre - rate * main.twice_centre), rate,
             0.5 * (along_[d].extent + std::abs(rate) * main.extent)};
   }
-  /// Of its box, along any axis, from 0.
-  double farthest() const { return std::max({along_[0].farthest, along_[1].farthest, along_[2].farthest}); }
+  /// Of its box, along any axis, from 0, up to rounding.
+  double farthest() const { return std::max({along_[0].farthest(), along_[1].farthest(), along_[2].farthest()}); }
 
  private:
   /// Along one axis; the box is given by twice its centre and by its extent.
   struct Along {
-    double velocity, speed;  ///< over the greatest speed along an axis
+    double velocity;  ///< over the greatest speed along an axis
     double twice_centre, extent;
-    double farthest;  ///< of its ends
+
+    double speed() const { return std::abs(velocity); }
+    double farthest() const { return 0.5 * (std::abs(twice_centre) + extent); }  ///< of its ends, up to rounding
   };
   /// Twice the distance of the centres along an axis, and the greatest at which boxes overlap.
   struct Side {
@@ -65,7 +67,6 @@ class BoxSlant {
   bool apart(std::size_t i, const Side& at_i, std::size_t j, const Side& at_j) const;
 
   std::array<Along, 3> along_;
-  std::size_t main_;
 };
 
 }  // namespace kds::collision

@@ -63,19 +63,20 @@ void KineticGrid<Degree>::set_expiry(BodySlot id, double expiry, double now) {
 template <int Degree>
 void KineticGrid<Degree>::extend_horizon(double now, double horizon) {
   horizon_ = horizon;
-  visit([&](BodySlot id, const KineticBox<Degree>&) { set_expiry(id, bodies_[id].expiry, now); });
+  visit([&](BodySlot id) { set_expiry(id, bodies_[id].expiry, now); });
 }
 
 /// The part of its fat box that a body uses, if it is small: the box is long, and nothing has changed the motion of the
 /// body for some time.
 template <int Degree>
-inline std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const StaticBox& present) const {
+inline std::optional<BoxSlant> KineticGrid<Degree>::slant(const Body& body, const KineticBox<Degree>& kinetic,
+                                                          const StaticBox& present) const {
   if constexpr (Degree == 1) {
     // (The second condition follows from the next, and costs less.)
-    if (body.jostled == 0 && body.travel > tuning_.slanted_at * 2 * body.box.rounding &&
-        body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(body.box) &&
-        BoxSlant::pays(present, body.box.min.coefficients[1])) {
-      return BoxSlant(present, body.box.min.coefficients[1]);
+    if (body.jostled == 0 && body.travel > tuning_.slanted_at * 2 * kinetic.rounding &&
+        body.travel > tuning_.slanted_at * present.extent() && corners_move_alike(kinetic) &&
+        BoxSlant::pays(present, kinetic.min.coefficients[1])) {
+      return BoxSlant(present, kinetic.min.coefficients[1]);
     }
   }
   return std::nullopt;
@@ -90,19 +91,19 @@ bool KineticGrid<Degree>::ended_pairs(BodySlot id, BoxGrid::Ids& ended, const Pa
 
 /// True if its fat box has begun or ceased to overlap others.
 template <int Degree>
-bool KineticGrid<Degree>::renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now,
-                                PairListener& listener) {
+bool KineticGrid<Degree>::renew(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep,
+                                const StaticBox& present, double now, PairListener& listener) {
   ++counters_.box_updates;
   Body& body = bodies_[id];
   ++filters_[body.filter].boxes;
-  const FatBox fat = fat_box(id, sweep, present, now);
+  const FatBox fat = fat_box(id, kinetic, sweep, present, now);
   set_expiry(id, fat.expiry, now);
   BoxGrid::Changes changes;
-  const std::optional<BoxSlant> part = slant(body, present);
+  const std::optional<BoxSlant> part = slant(body, kinetic, present);
   // Long boxes are far apart, so one search does not find what overlaps either.
   const bool alone =
       body.partners == 0 || ((part || fat_boxes_.slanted(id)) && ended_pairs(id, changes.ended, listener));
-  fat_boxes_.put(id, fat.box, changes, body.box.rounding, alone, part ? &*part : nullptr);
+  fat_boxes_.put(id, fat.box, changes, kinetic.rounding, alone, part ? &*part : nullptr);
   if (alone && body.partners > 0) changes.leave_out_common();
   report(id, changes, now, listener);
   if (in_vain_) separate(listener);
@@ -122,19 +123,18 @@ void KineticGrid<Degree>::remove(BodySlot id, double now, PairListener& listener
 template <int Degree>
 void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) {
   Body& body = bodies_[id];
-  const bool less_rounded = box.rounding < body.box.rounding;  // than the old fat box
-  body.box = box;
-  ++body.changes;
+  const bool less_rounded = kept_rounding(box.rounding) < fat_boxes_.rounding(id);  // than the old fat box
+  body.changed = true;
   body.tests += body.partners;
   // The old fat box often remains valid for a while.
-  const BoxSweep<Degree> sweep(body.box, now);
+  const BoxSweep<Degree> sweep(box, now);
   const StaticBox present = sweep.begin();
   if (!less_rounded) {
-    const double expiry = kept_until(id, sweep, present, now);
+    const double expiry = kept_until(id, box, sweep, present, now);
     if (expiry > now) return set_expiry(id, expiry, now);
   }
   adapt_travel(id, now);
-  renew(id, sweep, present, now, listener);
+  renew(id, box, sweep, present, now, listener);
 }
 
 template <int Degree>
@@ -147,8 +147,9 @@ bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
       continue;
     }
     adapt_travel(id, time);
-    const BoxSweep<Degree> sweep(bodies_[id].box, time);
-    if (renew(id, sweep, sweep.begin(), time, listener)) return true;
+    const KineticBox<Degree> box = box_of_(id);
+    const BoxSweep<Degree> sweep(box, time);
+    if (renew(id, box, sweep, sweep.begin(), time, listener)) return true;
   }
   return false;
 }
@@ -171,11 +172,10 @@ void KineticGrid<Degree>::visit_swept(const KineticBox<Degree>& box, double from
     if (bodies_[id].expiry >= until) visit(id);
   }
   const auto look = [&](BodySlot id) {
-    const Body& body = bodies_[id];
-    if (body.expiry < until && bounded_swept_box(body.box, from, until).overlaps(swept)) visit(id);
+    if (bodies_[id].expiry < until && bounded_swept_box(box_of_(id), from, until).overlaps(swept)) visit(id);
   };
   if (until <= horizon_) return expiry_.visit_until(until, look);
-  this->visit([&](BodySlot id, const KineticBox<Degree>&) { look(id); });
+  this->visit(look);
 }
 
 template <int Degree>
@@ -183,7 +183,7 @@ void KineticGrid<Degree>::audit(double now) const {
   for (BodySlot id = 0; id < fat_boxes_.end(); ++id) {
     if (!fat_boxes_.contains(id)) continue;
     if (bodies_[id].expiry <= now) continue;  // due
-    const StaticBox present = box_at(bodies_[id].box, now);
+    const StaticBox present = box_at(box_of_(id), now);
     // The rounding margins differ from those of the whole span.
     const double slack = 0x1p-45 * std::max(present.min.abs().maxCoeff(), present.max.abs().maxCoeff());
     StaticBox inner = present;

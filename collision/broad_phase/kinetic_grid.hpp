@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/broad_phase/box_grid.hpp"
+#include "collision/broad_phase/box_of.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -33,15 +35,18 @@ namespace kds::collision {
 ///
 /// The time at which a fat box ends is not a root: a time is chosen, and the box is then the swept AABB until that
 /// time, rounded outward. So scheduled times need not be exact.
+/// The kinetic boxes themselves are not stored: when a fat box is renewed, the owner of the bodies is asked.
+///
 /// Cost: O(1) a renewal or motion change, for bodies of bounded density, and a queue operation; nothing in between.
+/// Memory: a cache line a body, and that of the fat boxes and of the queue.
 template <int Degree>
 class KineticGrid final : public BroadPhase<Degree> {
  public:
   using Entry = typename BroadPhase<Degree>::Entry;
 
   /// `threads`: how many share the work when many bodies are added at once; 0 is as many as the machine has.
-  explicit KineticGrid(std::size_t threads = 1, const GridTuning& tuning = {})
-      : tuning_(tuning), fat_boxes_(tuning.cells), threads_(threads) {
+  explicit KineticGrid(BoxOf<Degree> box_of, std::size_t threads = 1, const GridTuning& tuning = {})
+      : box_of_(std::move(box_of)), tuning_(tuning), fat_boxes_(tuning.cells), threads_(threads) {
     check(tuning);
   }
 
@@ -67,11 +72,11 @@ class KineticGrid final : public BroadPhase<Degree> {
   /// Whether two bodies are a pair. Precondition: both are here.
   bool paired(BodySlot a, BodySlot b) const { return fat_boxes_.overlap(a, b); }
 
-  /// Calls visit(id, box) for each body.
+  /// Calls visit(id) for each body.
   template <class Visit>
   void visit(Visit&& visit) const {
     for (BodySlot id = 0; id < fat_boxes_.end(); ++id) {
-      if (fat_boxes_.contains(id)) visit(id, bodies_[id].box);
+      if (fat_boxes_.contains(id)) visit(id);
     }
   }
 
@@ -79,33 +84,33 @@ class KineticGrid final : public BroadPhase<Degree> {
   /// A box with this travel on both sides still has a finite extent.
   static constexpr double greatest_travel = 0x1p1020;
 
-  struct Body {
+  struct alignas(64) Body {
     Body() {}  // the implicit one would set all to zero first
 
     /// Resets it to the state of a new body.
-    void begin(const KineticBox<Degree>& its_box, double its_travel, double now) {
-      box = its_box;
+    void begin(double its_travel, double now) {
       entered = now;
       travel = its_travel;
       expiry = never;
-      begun = in_vain = partners = changes = tests = 0;
+      begun = in_vain = partners = tests = 0;
       jostled = 0;
+      changed = false;
     }
 
-    KineticBox<Degree> box;
     double entered = 0;
     double travel = 0;           ///< how far it may move in its fat box
     double fattened = 0;         ///< when its fat box was made
     double expiry = never;       ///< until when it is valid
+    double speed = 0;            ///< when its fat box was made
     std::uint32_t begun = 0;     ///< pairs since its last renewal
     std::uint32_t in_vain = 0;   ///< pairs found since then whose bodies may not collide
     std::uint32_t partners = 0;  ///< bodies with which it forms pairs
-    std::uint32_t changes = 0;   ///< of its motion since its last renewal
-    std::uint32_t tests = 0;     ///< of its pairs for these
-    std::uint32_t filter = 0;    ///< index in filters_
-    double speed = 0;            ///< when its fat box was made
+    std::uint32_t tests = 0;     ///< of its pairs for changes of its motion since its last renewal
     int jostled = 0;             ///< boxes in which its motion changed minus those in which it did not, bounded
+    std::uint8_t filter = 0;     ///< index in filters_
+    bool changed = false;        ///< whether its motion has changed since its last renewal
   };
+  static_assert(sizeof(Body) == 64);
   /// Bodies with the same filter, and what is known of them.
   struct Filter {
     std::uint64_t number = 0;
@@ -124,22 +129,25 @@ class KineticGrid final : public BroadPhase<Degree> {
   };
 
   template <class Sweep, class MayBegin>
-  FatBox fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now, double coarsest,
-                 MayBegin&& may_begin) const;
-  FatBox fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
-  std::uint32_t fit(Body& body, StaticBox& box, double now, double coarsest) const;
+  FatBox fat_box(Body& body, const KineticBox<Degree>& kinetic, const Sweep& sweep, const StaticBox& present,
+                 double now, double coarsest, MayBegin&& may_begin) const;
+  FatBox fat_box(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep,
+                 const StaticBox& present, double now);
+  std::uint32_t fit(Body& body, const KineticBox<Degree>& kinetic, StaticBox& box, double now, double coarsest) const;
   void prepare(std::size_t bodies, std::span<const Entry> some, double now);
   void insert_first(std::span<const Entry> bodies, double now, PairListener& listener);
   void make_boxes(std::span<const Entry> bodies, std::span<StaticBox> boxes, std::size_t threads, double now);
   void cut_to_levels(std::span<const Entry> bodies, std::span<StaticBox> boxes, double now);
   void report_pair(BodySlot a, BodySlot b, double now, PairListener& listener);
   template <class Sweep>
-  static double lifetime(const Body& body, const Sweep& sweep);
-  std::optional<BoxSlant> slant(const Body& body, const StaticBox& present) const;
-  double kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now);
+  static double lifetime(double travel, const KineticBox<Degree>& kinetic, const Sweep& sweep);
+  std::optional<BoxSlant> slant(const Body& body, const KineticBox<Degree>& kinetic, const StaticBox& present) const;
+  double kept_until(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep,
+                    const StaticBox& present, double now);
   void adapt_travel(BodySlot id, double now);
   static bool ended_pairs(BodySlot id, BoxGrid::Ids& ended, const PairListener& listener);
-  bool renew(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now, PairListener& listener);
+  bool renew(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep, const StaticBox& present,
+             double now, PairListener& listener);
   void set_expiry(BodySlot id, double expiry, double now);
   double travel_factor(std::uint32_t begun) const;
   bool much_in_vain(const Filter& filter) const {
@@ -151,6 +159,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   void separate(const PairListener& listener);
   void report(BodySlot id, BoxGrid::Changes& changes, double now, PairListener& listener);
 
+  BoxOf<Degree> box_of_;
   GridTuning tuning_;
   LargeVector<Body> bodies_;  // by id
   BoxGrid fat_boxes_;

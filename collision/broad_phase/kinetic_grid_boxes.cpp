@@ -35,14 +35,14 @@ double exit_time(const KineticBox<Degree>& box, const BoxBounds& present, const 
 /// Seconds until a box has moved by its travel, `never` if it is at rest; exact for straight paths, up to rounding.
 template <int Degree>
 template <class Sweep>
-inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep) {
-  if constexpr (Degree >= 3) return sweep.time_to_move(body.travel);
+inline double KineticGrid<Degree>::lifetime(double travel, const KineticBox<Degree>& kinetic, const Sweep& sweep) {
+  if constexpr (Degree >= 3) return sweep.time_to_move(travel);
   const double speed = sweep.speed();
-  double time = speed > 0 ? std::min(body.travel / speed, largest) : never;
+  double time = speed > 0 ? std::min(travel / speed, largest) : never;
   if constexpr (Degree == 2) {
-    const KineticBox<Degree>& box = body.box;
-    const double bend = box.min.coefficients[2].cwiseAbs().cwiseMax(box.max.coefficients[2].cwiseAbs()).maxCoeff();
-    if (bend > 0) time = std::min(time, std::sqrt(body.travel / bend));
+    const double bend =
+        kinetic.min.coefficients[2].cwiseAbs().cwiseMax(kinetic.max.coefficients[2].cwiseAbs()).maxCoeff();
+    if (bend > 0) time = std::min(time, std::sqrt(travel / bend));
   }
   return time;
 }
@@ -50,21 +50,22 @@ inline double KineticGrid<Degree>::lifetime(const Body& body, const Sweep& sweep
 /// `may_begin()`: whether a level coarser than `coarsest` may be begun just for the body's travel.
 template <int Degree>
 template <class Sweep, class MayBegin>
-inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const StaticBox& present, double now,
-                                         double coarsest, MayBegin&& may_begin) const -> FatBox {
+inline auto KineticGrid<Degree>::fat_box(Body& body, const KineticBox<Degree>& kinetic, const Sweep& sweep,
+                                         const StaticBox& present, double now, double coarsest,
+                                         MayBegin&& may_begin) const -> FatBox {
   body.fattened = now;
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
   body.travel = std::max(
       {body.travel, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
-  double time = lifetime(body, sweep);
+  double time = lifetime(body.travel, kinetic, sweep);
   body.speed = body.travel / time;
   if (time == never) return {present, never};
   // A jostled body may go anywhere next; a margin larger than its size would mostly be in vain.
   double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? body.travel : 0;
   Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
   if (margin > 0) {
-    ahead = tuning_.lead / sweep.speed() * body.box.min.coefficients[1].array();
+    ahead = tuning_.lead / sweep.speed() * kinetic.min.coefficients[1].array();
     time *= 1 + tuning_.lead;
   }
   const auto swept = [&](double expiry) {
@@ -103,10 +104,10 @@ inline auto KineticGrid<Degree>::fat_box(Body& body, const Sweep& sweep, const S
 }
 
 template <int Degree>
-auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present, double now)
-    -> FatBox {
+auto KineticGrid<Degree>::fat_box(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep,
+                                  const StaticBox& present, double now) -> FatBox {
   if (++boxes_since_ > fat_boxes_.size()) wishes_ = boxes_since_ = 0;
-  const FatBox fat = fat_box(bodies_[id], sweep, present, now, fat_boxes_.coarsest(), [&] {
+  const FatBox fat = fat_box(bodies_[id], kinetic, sweep, present, now, fat_boxes_.coarsest(), [&] {
     if (++wishes_ * tuning_.share_for_level <= fat_boxes_.size()) return false;
     wishes_ = boxes_since_ = 0;
     return true;
@@ -117,17 +118,18 @@ auto KineticGrid<Degree>::fat_box(BodySlot id, const BoxSweep<Degree>& sweep, co
 
 /// Gives a body a fat box that fits a level, unless the body itself does not. Returns the number of tries.
 template <int Degree>
-std::uint32_t KineticGrid<Degree>::fit(Body& body, StaticBox& box, double now, double coarsest) const {
+std::uint32_t KineticGrid<Degree>::fit(Body& body, const KineticBox<Degree>& kinetic, StaticBox& box, double now,
+                                       double coarsest) const {
   const auto fit = [&](const auto& sweep) __attribute__((always_inline)) {
-    const FatBox fat = fat_box(body, sweep, sweep.begin(), now, coarsest, [] { return false; });
+    const FatBox fat = fat_box(body, kinetic, sweep, sweep.begin(), now, coarsest, [] { return false; });
     box = fat.box;
     body.expiry = fat.expiry;
     return fat.certificates;
   };
   if constexpr (Degree == 1) {
-    if (corners_move_alike(body.box)) return fit(AlikeSweep(body.box, now));
+    if (corners_move_alike(kinetic)) return fit(AlikeSweep(kinetic, now));
   }
-  return fit(BoxSweep<Degree>(body.box, now));
+  return fit(BoxSweep<Degree>(kinetic, now));
 }
 
 /// The factor of the travel of a body that has not been jostled, if its box has lasted its time.
@@ -164,29 +166,28 @@ void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
   } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
     body.travel *= tuning_.shrink_after_turn;
   }
-  if (Degree == 1 && body.changes > 0) {
+  if (Degree == 1 && body.changed) {
     body.jostled = std::min(body.jostled + 1, tuning_.jostled_most);
   } else {
     body.jostled = std::max(body.jostled - 2, 0);
   }
   body.begun = body.in_vain = 0;
-  body.changes = 0;
+  body.changed = false;
   body.tests = 0;
 }
 
 /// Until when the present fat box of a body contains a new motion, if that is long enough to keep the box; otherwise
 /// `now`.
 template <int Degree>
-double KineticGrid<Degree>::kept_until(BodySlot id, const BoxSweep<Degree>& sweep, const StaticBox& present,
-                                       double now) {
-  const Body& body = bodies_[id];
+double KineticGrid<Degree>::kept_until(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep,
+                                       const StaticBox& present, double now) {
   const BoxBounds& fat = fat_boxes_.bounds(id);
   const BoxBounds bounds(present);
   if (!fat.contains(bounds) || fat_boxes_.slanted(id)) return now;
-  const double time = lifetime(body, sweep);
+  const double time = lifetime(bodies_[id].travel, kinetic, sweep);
   if (time == never) return never;
   const double expiry = now + std::max((Degree == 1 ? tuning_.kept_share_straight : tuning_.kept_share_curved) * time,
-                                       exit_time(body.box, bounds, fat));
+                                       exit_time(kinetic, bounds, fat));
   if (!(expiry > now && expiry <= largest && fat.contains(BoxBounds(sweep.until(expiry))))) return now;
   ++counters_.certificates;
   return expiry;

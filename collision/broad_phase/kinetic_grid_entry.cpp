@@ -93,9 +93,9 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   for (const Entry& entry : bodies) {
     join_filter(entry.slot, listener);
     const double travel = filters_[bodies_[entry.slot].filter].travel;
-    bodies_[entry.slot].begin(*entry.box, travel > 0 ? travel : first_travel_, now);
-    const BoxSweep<Degree> sweep(bodies_[entry.slot].box, now);
-    renew(entry.slot, sweep, sweep.begin(), now, listener);
+    bodies_[entry.slot].begin(travel > 0 ? travel : first_travel_, now);
+    const BoxSweep<Degree> sweep(*entry.box, now);
+    renew(entry.slot, *entry.box, sweep, sweep.begin(), now, listener);
   }
 }
 
@@ -150,8 +150,8 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].slot];
-      body.begin(*bodies[i].box, first_travel_, now);
-      tries += fit(body, boxes[i], now, std::numeric_limits<double>::max());
+      body.begin(first_travel_, now);
+      tries += fit(body, *bodies[i].box, boxes[i], now, std::numeric_limits<double>::max());
     }
     certificates[part] = tries;
   });
@@ -177,7 +177,7 @@ void KineticGrid<Degree>::cut_to_levels(std::span<const Entry> bodies, std::span
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     Body& body = bodies_[bodies[i].slot];
     if (!(boxes[i].extent() > coarsest) || body.expiry == never) continue;
-    counters_.certificates += fit(body, boxes[i], now, coarsest);
+    counters_.certificates += fit(body, *bodies[i].box, boxes[i], now, coarsest);
   }
 }
 

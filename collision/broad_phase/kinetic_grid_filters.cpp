@@ -23,7 +23,7 @@ void KineticGrid<Degree>::join_filter(BodySlot id, const PairListener& listener)
   }
   Filter& filter = filters_[i];
   ++filter.bodies;
-  bodies_[id].filter = static_cast<std::uint32_t>(i);
+  bodies_[id].filter = static_cast<std::uint8_t>(i);
   fat_boxes_.set_kind(id, filter.kind);
 }
 

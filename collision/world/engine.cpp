@@ -63,7 +63,8 @@ Engine<Motion>::Engine(BasicWorld<Motion>& world, const WorldOptions& options, L
 
 template <class Motion>
 void Engine<Motion>::make_broad_phase() {
-  broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), volumes_.kdops());
+  const auto box_of = [this](BodySlot slot) { return volumes_.box(slot); };
+  broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), box_of, volumes_.kdops());
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
   expected_ = 0;
   pairs_.expect_exact(broad_phase_->exact());

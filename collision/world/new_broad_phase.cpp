@@ -15,12 +15,12 @@ namespace kds::collision {
 
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options, double now, Profile* profile,
-                                                    Kdops<Degree> kdops) {
+                                                    BoxOf<Degree> box_of, Kdops<Degree> kdops) {
   switch (options.broad_phase) {
     case BroadPhaseKind::automatic:
-      return std::make_unique<AdaptiveBroadPhase<Degree>>(options.threads);
+      return std::make_unique<AdaptiveBroadPhase<Degree>>(std::move(box_of), options.threads);
     case BroadPhaseKind::grid:
-      return std::make_unique<KineticGrid<Degree>>(options.threads);
+      return std::make_unique<KineticGrid<Degree>>(std::move(box_of), options.threads);
     case BroadPhaseKind::kinetic_sap:
       return std::make_unique<KineticSweepAndPrune<Degree>>(now, SweepTuning{}, std::move(kdops));
     case BroadPhaseKind::sap:
@@ -35,8 +35,9 @@ std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options,
   throw std::invalid_argument("WorldOptions.broad_phase: unknown");
 }
 
-#define KDS_INSTANTIATE(degree) \
-  template std::unique_ptr<BroadPhase<degree>> new_broad_phase(const WorldOptions&, double, Profile*, Kdops<degree>);
+#define KDS_INSTANTIATE(degree)                                                                                      \
+  template std::unique_ptr<BroadPhase<degree>> new_broad_phase(const WorldOptions&, double, Profile*, BoxOf<degree>, \
+                                                               Kdops<degree>);
 KDS_FOR_EACH_DEGREE(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

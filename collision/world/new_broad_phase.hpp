@@ -1,6 +1,7 @@
 // Makes the broad phase that options ask for.
 #pragma once
 
+#include "collision/broad_phase/box_of.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/broad_phase/kdop.hpp"
 #include "collision/profile.hpp"
@@ -14,6 +15,6 @@ namespace kds::collision {
 /// cannot have.
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> new_broad_phase(const WorldOptions& options, double now, Profile* profile,
-                                                    Kdops<Degree> kdops);
+                                                    BoxOf<Degree> box_of, Kdops<Degree> kdops);
 
 }  // namespace kds::collision

@@ -218,5 +218,25 @@ TEST_CASE("A box grid tells of the overlaps of slanted boxes, and of kinds that 
   }
 }
 
+TEST_CASE("Boxes that are announced are whole, whatever boxes of their numbers were before", "[box_slant][box_grid]") {
+  const StaticBox long_box{{0, 0, 0}, {8, 8, 8}}, in_its_corner{{0, 7, 0}, {1, 8, 1}};
+  BoxGrid grid;
+  grid.reserve(2);
+  BoxGrid::Changes changes;
+  const BoxSlant slant({{0, 0, 0}, {1, 1, 1}}, {1, 1, 1});
+  grid.put(0, long_box, changes, 0, false, &slant);
+  grid.put(1, in_its_corner, changes);
+  CHECK(changes.empty());
+  grid.remove(0, changes);
+  grid.remove(1, changes);
+  grid.announce(0, long_box);
+  grid.announce(1, in_its_corner);
+  grid.enter(0, changes);
+  grid.enter(1, changes);
+  CHECK_FALSE(grid.slanted(0));
+  CHECK(grid.overlap(0, 1));
+  CHECK(changes.began.size() == 1);
+}
+
 }  // namespace
 }  // namespace kds::collision::test_box_slant

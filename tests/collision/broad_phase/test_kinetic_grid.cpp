@@ -3,6 +3,7 @@
 #include "collision/broad_phase/kinetic_grid.hpp"
 #include "kds/audit.hpp"
 #include "tests/collision/broad_phase/broad_phase_stress.hpp"
+#include "tests/collision/broad_phase/kept_boxes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -20,8 +21,8 @@ using namespace tests;
 
 template <int Degree>
 std::unique_ptr<BroadPhase<Degree>> make(bool chooses) {
-  if (chooses) return std::make_unique<AdaptiveBroadPhase<Degree>>(1, AdaptiveTuning{.most_for_few = 8});
-  return std::make_unique<KineticGrid<Degree>>();
+  if (chooses) return with_boxes<AdaptiveBroadPhase, Degree>(std::size_t{1}, AdaptiveTuning{.most_for_few = 8});
+  return with_boxes<KineticGrid, Degree>();
 }
 
 TEMPLATE_TEST_CASE_SIG("The kinetic grid has all pairs that overlap, whatever happens", "[broad_phase]",
@@ -72,15 +73,15 @@ KineticBox<1> cube(const Vector3d& at, const Vector3d& velocity, double now = 0)
 }
 
 TEST_CASE("A body at rest costs nothing while time goes on, and starts when it is told to", "[broad_phase]") {
-  KineticGrid<1> grid;
+  std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, Vector3d::Zero()), cube({10, 0, 0}, Vector3d::Zero())};
+  KineticGrid<1> grid(boxes_of(boxes));
   ListedPairs pairs;
-  const auto still = cube({0, 0, 0}, Vector3d::Zero());
-  const auto other = cube({10, 0, 0}, Vector3d::Zero());
-  const std::vector<KineticGrid<1>::Entry> entries{{0, &still}, {1, &other}};
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &boxes[0]}, {1, &boxes[1]}};
   grid.insert(entries, 0, pairs);
   CHECK(grid.next_time() == never);
   CHECK(!grid.advance(1e9, pairs));
-  grid.update(1, cube({10, 0, 0}, {-1, 0, 0}, 5), 5, pairs);
+  boxes[1] = cube({10, 0, 0}, {-1, 0, 0}, 5);
+  grid.update(1, boxes[1], 5, pairs);
   CHECK(grid.next_time() < never);
   while (grid.advance(20, pairs)) {
   }
@@ -89,9 +90,9 @@ TEST_CASE("A body at rest costs nothing while time goes on, and starts when it i
 }
 
 TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
-  KineticGrid<1> grid;
-  ListedPairs pairs;
   std::vector<KineticBox<1>> boxes;
+  KineticGrid<1> grid(boxes_of(boxes));
+  ListedPairs pairs;
   for (int i = 0; i < 20; ++i) boxes.push_back(cube({2.0 * i, 0, 0}, {0.1 * i, 0, 0}));
   std::vector<KineticGrid<1>::Entry> entries;
   for (BodySlot id = 0; id < 20; ++id) entries.push_back({id, &boxes[id]});
@@ -106,12 +107,11 @@ TEST_CASE("Bodies that fly apart are soon left alone", "[broad_phase]") {
 
 TEST_CASE("Clocks so large that a body moves by its size between two doubles do not stop the kinetic grid",
           "[broad_phase]") {
-  KineticGrid<1> grid;
-  ListedPairs pairs;
   const double now = 0x1p60;  // where doubles are 256 apart
-  const auto fast = cube({0, 0, 0}, {1, 0, 0}, now);
-  const auto target = cube({5000, 0, 0}, Vector3d::Zero(), now);
-  const std::vector<KineticGrid<1>::Entry> entries{{0, &fast}, {1, &target}};
+  const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {1, 0, 0}, now), cube({5000, 0, 0}, Vector3d::Zero(), now)};
+  KineticGrid<1> grid(boxes_of(boxes));
+  ListedPairs pairs;
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &boxes[0]}, {1, &boxes[1]}};
   grid.insert(entries, now, pairs);
   while (grid.advance(now + 8192, pairs)) {
   }
@@ -120,14 +120,15 @@ TEST_CASE("Clocks so large that a body moves by its size between two doubles do 
 }
 
 TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]") {
-  KineticGrid<1> grid;
-  ListedPairs pairs;
+  std::vector<KineticBox<1>> boxes;
   certificates::PointMotion<1> path;
   path.coefficients = {Vector3d(0, 0, 0), Vector3d(1, 0, 0)};
-  const KineticBox<1> point{path, path};
+  boxes.push_back({path, path});
   path.coefficients = {Vector3d(7, 0, 0), Vector3d(0, 0, 0)};
-  const KineticBox<1> other{path, path};
-  const std::vector<KineticGrid<1>::Entry> entries{{0, &point}, {1, &other}};
+  boxes.push_back({path, path});
+  KineticGrid<1> grid(boxes_of(boxes));
+  ListedPairs pairs;
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &boxes[0]}, {1, &boxes[1]}};
   grid.insert(entries, 0, pairs);
   while (grid.advance(10, pairs)) {
   }
@@ -136,10 +137,10 @@ TEST_CASE("Boxes without extent move on in the kinetic grid too", "[broad_phase]
 }
 
 TEST_CASE("An audit of the kinetic grid sees a body outside its fat box", "[broad_phase]") {
-  KineticGrid<1> grid;
+  const std::vector<KineticBox<1>> boxes{cube({0, 0, 0}, {1, 0, 0})};
+  KineticGrid<1> grid(boxes_of(boxes));
   ListedPairs pairs;
-  const auto moving = cube({0, 0, 0}, {1, 0, 0});
-  const std::vector<KineticGrid<1>::Entry> entries{{0, &moving}};
+  const std::vector<KineticGrid<1>::Entry> entries{{0, &boxes[0]}};
   grid.insert(entries, 0, pairs);
   grid.audit(0);
   CHECK_THROWS_AS(grid.audit(-100), AuditFailure);
@@ -169,7 +170,7 @@ TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[bro
   }
   std::vector<BroadPhase<1>::Entry> entries;
   for (std::size_t i = 0; i < count; ++i) entries.push_back({static_cast<BodySlot>(3 * (count - i)), &boxes[i]});
-  KineticGrid<1> grid;
+  KineticGrid<1> grid([&](BodySlot id) { return boxes.at(count - id / 3); });
   PairSet found;
   grid.extend_horizon(0, never);
   grid.insert(entries, 0, found);

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "collision/broad_phase/swept_sweep_and_prune.hpp"
 #include "tests/collision/broad_phase/broad_phase_stress.hpp"
+#include "tests/collision/broad_phase/kept_boxes.hpp"
 #include "tests/support/exact_rational.hpp"
 #include "tests/support/random_numbers.hpp"
 
@@ -33,8 +34,8 @@ std::unique_ptr<BroadPhase<Degree>> make(const std::string& way) {
   constexpr double frames_per_second = 2;
   if (way == "all pairs") return std::make_unique<AllPairs<Degree>>();
   if (way == "few boxes") return std::make_unique<FewBoxes<Degree>>();
-  if (way == "grid") return std::make_unique<KineticGrid<Degree>>();
-  if (way == "chosen") return std::make_unique<AdaptiveBroadPhase<Degree>>(1, AdaptiveTuning{.most_for_few = 8});
+  if (way == "grid") return with_boxes<KineticGrid, Degree>();
+  if (way == "chosen") return with_boxes<AdaptiveBroadPhase, Degree>(std::size_t{1}, AdaptiveTuning{.most_for_few = 8});
   if (way == "frames") return std::make_unique<SweptSweepAndPrune<Degree>>(0, frames_per_second, nullptr);
   const ListedAxes listed = way == "one list" ? ListedAxes::one : ListedAxes::all;
   return std::make_unique<KineticSweepAndPrune<Degree>>(0, SweepTuning{.listed = listed});

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/adaptive_broad_phase.hpp"
 #include "collision/broad_phase/kinetic_sweep_and_prune.hpp"
 #include "tests/collision/broad_phase/broad_phase_stress.hpp"
+#include "tests/collision/broad_phase/kept_boxes.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -76,10 +77,10 @@ const std::vector<Change<FewBoxesTuning>> other_few_boxes{
 TEMPLATE_TEST_CASE_SIG("The tuning of broad phases changes what they cost and not what they find", "[broad_phase]",
                        ((int Degree), Degree), 1, 2) {
   std::size_t differ = 0;
-  const auto grid = run<Degree>(std::make_unique<KineticGrid<Degree>>(), 12);
+  const auto grid = run<Degree>(with_boxes<KineticGrid, Degree>(), 12);
   for (const GridTuning& tuning : all_of(other_grids)) {
     INFO("grid " << differ);
-    differ += run<Degree>(std::make_unique<KineticGrid<Degree>>(1, tuning), 12) != grid;
+    differ += run<Degree>(with_boxes<KineticGrid, Degree>(std::size_t{1}, tuning), 12) != grid;
   }
   CHECK(differ > other_grids.size() / 2);
 
@@ -91,11 +92,11 @@ TEMPLATE_TEST_CASE_SIG("The tuning of broad phases changes what they cost and no
   }
   CHECK(differ > other_few_boxes.size() / 2);
 
-  const auto chosen = run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(), 12);
+  const auto chosen = run<Degree>(with_boxes<AdaptiveBroadPhase, Degree>(), 12);
   AdaptiveTuning adaptive;
   adaptive.most_for_few = 8;
   adaptive.grid.first_travel = 4;
-  CHECK(run<Degree>(std::make_unique<AdaptiveBroadPhase<Degree>>(1, adaptive), 12) != chosen);
+  CHECK(run<Degree>(with_boxes<AdaptiveBroadPhase, Degree>(std::size_t{1}, adaptive), 12) != chosen);
 
   const auto lists = run<Degree>(std::make_unique<KineticSweepAndPrune<Degree>>(0), 12);
   for (const SweepTuning& tuning : {SweepTuning{.few_bodies = 10}, SweepTuning{.listed = ListedAxes::two},
@@ -133,7 +134,7 @@ TEST_CASE("A tuning that is out of range is refused by name", "[broad_phase]") {
   require_refused<SweepTuning>([](auto& t) { t.listed = static_cast<ListedAxes>(9); }, "SweepTuning.listed");
   GridTuning tuning;
   tuning.lead = -1;
-  CHECK_THROWS_AS(KineticGrid<1>(1, tuning), std::invalid_argument);
+  CHECK_THROWS_AS(KineticGrid<1>(nullptr, 1, tuning), std::invalid_argument);
 }
 
 }  // namespace
