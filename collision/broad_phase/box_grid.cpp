@@ -90,11 +90,14 @@ inline void BoxGrid::compare(const Item& from, const Item& to, const CellTable::
 template <bool slants>
 inline void BoxGrid::take_overlapping(Id id, const Item& item, const CellTable::Found& found, Ids& overlapping) {
   const BoxOverlaps overlaps = overlaps_with(item);
+  const BoxSlant* const own = slants ? slant(id) : nullptr;
   for (const Id other : found.numbers()) {
-    if (overlaps.with(items_[other].bounds, items_[other].rounding) == 0 || !meets(item.kind, other)) continue;
+    // Of what is found near a prism most is outside of it, and in the box around it.
     if constexpr (slants) {
-      if (apart(item.bounds, slant(id), other)) continue;
+      if (own && own->apart(items_[other].bounds)) continue;
+      if (slanted(other) && slants_[items_[other].slant].apart(item.bounds)) continue;
     }
+    if (overlaps.with(items_[other].bounds, items_[other].rounding) == 0 || !meets(item.kind, other)) continue;
     if (report_once(other)) overlapping.push_back(other);
   }
 }
@@ -257,7 +260,12 @@ void BoxGrid::move(Id id, const Item& to, Changes& changes, bool alone) {
     count_guest(*level);
     replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
   }
-  slants_.empty() ? compare<false>(from, to, found, changes) : compare<true>(from, to, found, changes);
+  if (alone) {
+    slants_.empty() ? take_overlapping<false>(id, to, found, changes.began)
+                    : take_overlapping<true>(id, to, found, changes.began);
+  } else {
+    slants_.empty() ? compare<false>(from, to, found, changes) : compare<true>(from, to, found, changes);
+  }
   tidy();
 }
 

@@ -145,6 +145,8 @@ class BoxGrid {
 
   /// Whether only a part of the box counts. Precondition: contains(id).
   bool slanted(Id id) const { return items_[id].slant != no_slant; }
+  /// Whether that may be so of any box.
+  bool any_slanted() const { return !slants_.empty(); }
 
   /// For inserting many into an empty grid in an order that suits the cache: first all are announced, then each one
   /// enters. No other function may be called in between. Precondition: id below the end reserved; none has entered.
@@ -295,8 +297,6 @@ class BoxGrid {
   }
   void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
-  static void limit(CellTable::Block& block, std::size_t d, std::int64_t from, std::int64_t to, std::int64_t low,
-                    std::int64_t high);
   void count_crowd(std::size_t chained, std::size_t cells);
   void search_finer(const Level& level, const Item& item, Kind kind, CellTable::Found& found);
   void follow(const Way& way, Kind kind, CellTable::Found& found);

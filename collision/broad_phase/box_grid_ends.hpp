@@ -15,20 +15,46 @@ namespace kds::collision {
 inline constexpr int lattice_bits = 5;
 inline constexpr std::int64_t units_per_cell = 1 << lattice_bits;
 
-/// Byte i of CellTable::Ends. Values out of range are cut off in the same way on both sides of a comparison.
-inline CellTable::Ends lattice_byte(std::size_t i, std::int64_t value) {
+/// Bytes 0 to 5 of CellTable::Ends are the ends (min, -max). Values out of range are cut off in the same way on both
+/// sides of a comparison.
+inline CellTable::Ends lattice_byte(std::int64_t value) {
   const std::int64_t bounded = std::clamp(value, -CellTable::limit, CellTable::limit);
-  return static_cast<CellTable::Ends>(static_cast<std::uint8_t>(bounded)) << 8 * i;
+  return static_cast<std::uint8_t>(bounded);
 }
 
 /// Bytes 6 and 7: the row, modulo 16 and 8, and its complement; this is the part of one coordinate. One of the two
 /// exceeds that of any other row, so the rows of a search, of which there are fewer, are not mistaken for each other.
-inline CellTable::Ends row_mark(std::size_t d, std::int64_t cell) {
-  if (d == 0) return 0;
-  const CellTable::Ends bits = d == 1 ? 0x0F : 0x70;
-  const auto mark = static_cast<CellTable::Ends>(d == 1 ? cell : cell << 4) & bits;
-  return mark << 48 | (mark ^ (d == 1 ? bits : 0xF0)) << 56;
-}
+class RowMark {
+ public:
+  explicit RowMark(std::size_t d) : part_(parts[d]) {}
+  CellTable::Ends of(std::int64_t cell) const {
+    const CellTable::Ends mark = static_cast<CellTable::Ends>(cell) << part_.shift & part_.bits;
+    return (mark | (mark ^ part_.complement) << 8) << 48;
+  }
+
+ private:
+  struct Part {
+    int shift;
+    CellTable::Ends bits, complement;
+  };
+  static constexpr Part parts[]{{0, 0, 0}, {0, 0x0F, 0x0F}, {4, 0x70, 0xF0}};
+
+  Part part_;
+};
+
+/// The limits along an axis that the ends of boxes in a cell do not exceed if they overlap [low, high] there.
+class LatticeLimits {
+ public:
+  explicit LatticeLimits(std::size_t d) : shift_(static_cast<int>(8 * d)), mark_(d) {}
+  CellTable::Ends in(std::int64_t cell, std::int64_t low, std::int64_t high) const {
+    const std::int64_t corner = cell * units_per_cell;
+    return (lattice_byte(high - corner) | lattice_byte(corner - low) << 24) << shift_ | mark_.of(cell);
+  }
+
+ private:
+  int shift_;
+  RowMark mark_;
+};
 
 /// The marks of both coordinates.
 inline CellTable::Ends row_marks(std::int64_t y, std::int64_t z) {
@@ -89,12 +115,6 @@ struct BoxGrid::Ends {
     constexpr CellTable::Ends carries = 0x7F7F7F;
     const CellTable::Ends sum = ((minus_high & carries) + (corner & carries)) ^ ((minus_high ^ corner) & ~carries);
     return (low & within) | sum << 24 | row_marks(cell(1), cell(2));
-  }
-
-  /// The limits that the ends of boxes in cells of this coordinate do not exceed if they overlap.
-  CellTable::Ends limits(std::size_t d, std::int64_t cell) const {
-    const std::int64_t corner = cell << lattice_bits;
-    return lattice_byte(d, -values[d + 3] - corner) | lattice_byte(d + 3, corner - values[d]);
   }
 
   std::array<std::int64_t, 6> values;

@@ -168,20 +168,6 @@ void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& popula
   }
 }
 
-/// Cells from one to another along an axis, for boxes that overlap [low, high] there. Precondition: they are at most
-/// Block::longest.
-inline void BoxGrid::limit(CellTable::Block& block, std::size_t d, std::int64_t from, std::int64_t to, std::int64_t low,
-                           std::int64_t high) {
-  block.low[d] = from;
-  block.lengths[d] = static_cast<std::size_t>(to - from + 1);
-  assert(from <= to && block.lengths[d] <= CellTable::Block::longest);
-  for (std::int64_t cell = from; cell <= to; ++cell) {
-    const std::int64_t corner = cell * units_per_cell;
-    block.limits[d][static_cast<std::size_t>(cell - from)] =
-        lattice_byte(d, high - corner) | lattice_byte(d + 3, corner - low) | row_mark(d, cell);
-  }
-}
-
 /// Notes how many chained buckets a search of so many cells has visited.
 inline void BoxGrid::count_crowd(std::size_t chained, std::size_t cells) {
   const std::int64_t allowed = tuning_.crowded_chain * static_cast<std::int64_t>(cells);
@@ -198,16 +184,21 @@ void BoxGrid::search(const CellTable& table, std::uint64_t family, const Populat
     const std::int64_t low = Ends::cell_of(std::max(box.values[d] - population.span, population.low[d]));
     const std::int64_t high = Ends::cell_of(std::min(-box.values[d + 3], population.high[d]));
     if (low > high) return;
-    limit(block, d, low, high, box.values[d], -box.values[d + 3]);
+    block.low[d] = low;
+    block.lengths[d] = static_cast<std::size_t>(high - low + 1);
+    assert(block.lengths[d] <= CellTable::Block::longest);
+    const LatticeLimits limits(d);
+    for (std::int64_t cell = low; cell <= high; ++cell) {
+      block.limits[d][static_cast<std::size_t>(cell - low)] = limits.in(cell, box.values[d], -box.values[d + 3]);
+    }
   }
   count_crowd(table.find(block, found), block.lengths[0] * block.lengths[1] * block.lengths[2]);
 }
 
-/// The way of a prism through the cells of a level, cut into pieces of some cells along its main axis, in each of which
-/// it moves across by two cells at most.
+/// The way of a prism through the cells of a level, slab by slab of cells along its main axis.
 struct BoxGrid::Way {
-  /// Across, where x along the main axis is 0: the least and the greatest coordinate in a piece, with those of the
-  /// boxes in its cells, and a unit for roundings.
+  /// Across, where x along the main axis is 0: the least and the greatest coordinate in a slab, with those of the boxes
+  /// in its cells, and a unit for roundings.
   struct Across {
     std::size_t d;
     double rate, low, high;
@@ -217,34 +208,26 @@ struct BoxGrid::Way {
       : level(of_level), natives(of_natives), box(item.bounds, level.scale), main(slant.main_axis()) {
     first = Ends::cell_of(std::max(box.values[main] - natives.span, natives.low[main]));
     last = Ends::cell_of(std::min(-box.values[main + 3], natives.high[main]));
-    double steepest = 0;
+    const auto end = static_cast<double>(units_per_cell + natives.span);
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t d = (main + 1 + i) % 3;
       const BoxSlant::Line line = slant.line(d);
-      across[i] = {d, line.rate, level.scale * (line.at - line.half) - 1, level.scale * (line.at + line.half) + 1};
-      steepest = std::max(steepest, std::abs(line.rate));
+      across[i] = {d, line.rate, level.scale * (line.at - line.half) - 1 + std::min(-line.rate, line.rate * end),
+                   level.scale * (line.at + line.half) + 1 + std::max(-line.rate, line.rate * end)};
       widest = std::max(widest, level.scale * line.half);
     }
     farthest = level.scale * slant.farthest();
-    step = steepest > 0.5 ? static_cast<std::int64_t>(2 / steepest) : longest;
-    const auto end = static_cast<double>(step * units_per_cell + natives.span);
-    for (Across& a : across) {
-      a.low += std::min(-a.rate, a.rate * end);
-      a.high += std::max(-a.rate, a.rate * end);
-    }
   }
 
-  std::int64_t pieces() const { return first > last ? 0 : (last - first) / step + 1; }
-  /// Whether roundings are less than a unit, and no piece has more cells than a block.
+  std::int64_t slabs() const { return first > last ? 0 : last - first + 1; }
+  /// Whether roundings are less than a unit, and no slab has more cells across than a block.
   bool fits() const { return farthest < 0x1p40 && widest < units_per_cell; }
 
-  static constexpr std::int64_t longest = 4;  ///< piece
   const Level& level;
   const Population& natives;
   Ends box;
   std::size_t main;
   std::int64_t first, last;  ///< cells along the main axis
-  std::int64_t step;         ///< of a piece, in cells
   double widest = 0;
   double farthest;
   std::array<Across, 2> across;
@@ -257,17 +240,17 @@ void BoxGrid::search_finer(const Level& level, const Item& item, Kind kind, Cell
   if (guests.count == 0) return;
   if (item.slant != no_slant) {
     boost::container::small_vector<Way, 4> ways;
-    std::int64_t pieces = 0;
+    std::int64_t slabs = 0;
     bool fits = true;
     for (const Level& finer : levels_) {
       if (finer.exponent >= level.exponent) break;
       const Population& natives = finer.of[kind].natives;
       if (natives.count == 0) continue;
       ways.emplace_back(slants_[item.slant], finer, natives, item);
-      pieces += ways.back().pieces();
+      slabs += ways.back().slabs();
       fits = fits && ways.back().fits();
     }
-    if (fits && pieces * tuning_.guests_per_piece < static_cast<std::int64_t>(guests.count)) {
+    if (fits && slabs * tuning_.guests_per_slab < static_cast<std::int64_t>(guests.count)) {
       for (const Way& way : ways) follow(way, kind, found);
       return;
     }
@@ -278,25 +261,39 @@ void BoxGrid::search_finer(const Level& level, const Item& item, Kind kind, Cell
 void BoxGrid::follow(const Way& way, Kind kind, CellTable::Found& found) {
   const auto& box = way.box.values;
   const Population& natives = way.natives;
-  CellTable::Block block;
-  block.family = way.level.family_of(kind);
-  for (std::int64_t cell = way.first; cell <= way.last; cell += way.step) {
+  CellTable::Slab slab;
+  const CellTable::Step step = CellTable::step(way.main);
+  slab.steps = {CellTable::step(way.across[0].d), CellTable::step(way.across[1].d)};
+  const LatticeLimits along(way.main);
+  const std::array<LatticeLimits, 2> across{LatticeLimits(way.across[0].d), LatticeLimits(way.across[1].d)};
+  const std::uint64_t family = way.level.family_of(kind);
+  std::size_t walked = 0, cells = 0;
+  for (std::int64_t cell = way.first; cell <= way.last; ++cell) {
     const auto x = static_cast<double>(cell * units_per_cell);
-    bool meets = true;
-    for (const auto& [d, rate, least, greatest] : way.across) {
+    slab.row = family + static_cast<std::uint64_t>(cell) * step.row;
+    slab.place = static_cast<std::size_t>(cell) * step.place;
+    // False if the prism meets no cell of the slab.
+    const auto look_across = [&](std::size_t i) __attribute__((always_inline)) {
+      const auto& [d, rate, least, greatest] = way.across[i];
       const std::int64_t low = std::max<std::int64_t>(box[d], std::llrint(least + rate * x));
       const std::int64_t high = std::min<std::int64_t>(-box[d + 3], std::llrint(greatest + rate * x));
       const std::int64_t from = Ends::cell_of(std::max(low - natives.span, natives.low[d]));
       const std::int64_t to = Ends::cell_of(std::min(high, natives.high[d]));
-      meets = from <= to;
-      if (!meets) break;
-      limit(block, d, from, to, low, high);
-    }
-    if (!meets) continue;
-    const std::size_t main = way.main;
-    limit(block, main, cell, std::min(cell + way.step - 1, way.last), box[main], -box[main + 3]);
-    count_crowd(natives_.find_few(block, found), block.lengths[0] * block.lengths[1] * block.lengths[2]);
+      if (from > to) return false;
+      slab.row += static_cast<std::uint64_t>(from) * slab.steps[i].row;
+      slab.place += static_cast<std::size_t>(from) * slab.steps[i].place;
+      slab.lengths[i] = static_cast<std::size_t>(to - from + 1);
+      assert(slab.lengths[i] <= CellTable::Slab::widest);
+      CellTable::Ends* limits = slab.limits[i].data();
+      for (std::int64_t c = from; c <= to; ++c) *limits++ = across[i].in(c, low, high);
+      return true;
+    };
+    if (!look_across(0) || !look_across(1)) continue;
+    slab.limit = along.in(cell, box[way.main], -box[way.main + 3]);
+    cells += slab.lengths[0] * slab.lengths[1];
+    walked += natives_.find(slab, found);
   }
+  count_crowd(walked, cells);
 }
 
 }  // namespace kds::collision

@@ -64,7 +64,7 @@ bool BoxGrid::search_in(const Level& level, Kind kind, const StaticBox& box, Ids
     block.lengths[d] = static_cast<std::size_t>(std::min(high[d] - first + 1, longest));
     for (std::size_t i = 0; i < block.lengths[d]; ++i) {
       const std::int64_t cell = first + static_cast<std::int64_t>(i);
-      block.limits[d][i] = ends.limits(d, cell) | row_mark(d, cell);
+      block.limits[d][i] = LatticeLimits(d).in(cell, ends.values[d], -ends.values[d + 3]);
     }
   };
   for (std::int64_t z = low[2]; z <= high[2]; z += longest) {

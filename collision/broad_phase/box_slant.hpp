@@ -69,4 +69,22 @@ class BoxSlant {
   std::array<Along, 3> along_;
 };
 
+inline BoxSlant::Side BoxSlant::side(std::size_t d, double min, double minus_max) const {
+  const double farthest = along_[d].farthest() + std::max(std::abs(min), std::abs(minus_max));
+  return {min - minus_max - along_[d].twice_centre, along_[d].extent - (min + minus_max) + 0x1p-47 * farthest};
+}
+
+inline bool BoxSlant::apart(std::size_t i, const Side& at_i, std::size_t j, const Side& at_j) const {
+  return std::abs(along_[j].velocity * at_i.distance - along_[i].velocity * at_j.distance) >
+         along_[j].speed() * at_i.reach + along_[i].speed() * at_j.reach;
+}
+
+inline bool BoxSlant::apart(const BoxBounds& other) const {
+  const Side x = side(0, other.xy[0], other.zx[1]);
+  const Side y = side(1, other.xy[1], other.yz[0]);
+  if (apart(0, x, 1, y)) return true;
+  const Side z = side(2, other.zx[0], other.yz[1]);
+  return apart(1, y, 2, z) || apart(2, z, 0, x);
+}
+
 }  // namespace kds::collision

@@ -109,35 +109,22 @@ std::size_t CellTable::find(const Block& block, Found& found) const {
   return walked;
 }
 
-/// Without gathering: a bucket that has any is a surprise. And as processors cannot predict how long the rows of a
-/// block are either, all rows are found first, without a branch from row to row.
-std::size_t CellTable::find_few(const Block& block, Found& found) const {
-  struct Row {
-    std::size_t begin;
-    Ends limits;
-  };
-  std::array<Row, Block::longest * Block::longest> rows;
-  const auto [cells_x, cells_y, cells_z] = block.lengths;
-  const std::size_t end = cells_y * cells_z;
-  std::uint64_t row = mixed(block.family, block.low[1], block.low[2]);
-  const std::uint64_t along_z_back = along_z - cells_y * along_y;
-  std::size_t y = 0, z = 0;
-  for (std::size_t i = 0; i < end; ++i) {
-    rows[i] = {static_cast<std::size_t>(row >> shift_) + static_cast<std::size_t>(block.low[0]),
-               block.limits[2][z] | block.limits[1][y]};
-    const std::size_t over = ++y == cells_y;
-    row += along_y + (over ? along_z_back : 0);
-    y = over ? 0 : y;
-    z += over;
-  }
+/// Without gathering: a bucket that has any is a surprise.
+std::size_t CellTable::find(const Slab& slab, Found& found) const {
   std::size_t walked = 0;
   const Bucket* const buckets = buckets_.data();
   const std::size_t mask = buckets_.size() - 1;
-  for (std::size_t x = 0; x < cells_x; ++x) {
-    const Ends limits_x = block.limits[0][x];
-    for (std::size_t i = 0; i < end; ++i) {
-      const Ends limits = limits_x | rows[i].limits;
-      for (const Bucket* bucket = &buckets[(rows[i].begin + x) & mask];; bucket = &chained_[bucket->next], ++walked) {
+  const auto [first, second] = slab.steps;
+  std::uint64_t first_row = slab.row;
+  std::size_t first_place = slab.place;
+  for (std::size_t i = 0; i < slab.lengths[0]; ++i) {
+    const Ends limits_first = slab.limit | slab.limits[0][i];
+    std::uint64_t row = first_row;
+    std::size_t place = first_place;
+    for (std::size_t j = 0; j < slab.lengths[1]; ++j) {
+      const Ends limits = limits_first | slab.limits[1][j];
+      const auto begin = static_cast<std::size_t>(row >> shift_) + place;
+      for (const Bucket* bucket = &buckets[begin & mask];; bucket = &chained_[bucket->next], ++walked) {
         std::uint64_t left = bucket->within(limits);
         if (left != 0) [[unlikely]] {
           std::uint32_t* to = found.room_for(most);
@@ -146,7 +133,11 @@ std::size_t CellTable::find_few(const Block& block, Found& found) const {
         }
         if (bucket->next == none) break;
       }
+      row += second.row;
+      place += second.place;
     }
+    first_row += first.row;
+    first_place += first.place;
   }
   return walked;
 }

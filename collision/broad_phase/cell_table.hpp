@@ -104,8 +104,31 @@ class CellTable {
   /// has walked beyond the first of each cell.
   std::size_t find(const Block& block, Found& found) const;
 
-  /// The same, in less time where few numbers are within the limits, and in more where many are.
-  std::size_t find_few(const Block& block, Found& found) const;
+  /// A step from a cell to the next along an axis: in its row, or to another row.
+  struct Step {
+    std::size_t place;
+    std::uint64_t row;
+  };
+  static Step step(std::size_t axis) {
+    constexpr std::array<Step, 3> steps{{{1, 0}, {0, along_y}, {0, along_z}}};
+    return steps[axis];
+  }
+
+  /// Cells of a slab across an axis, with the limits along it; and by cell along the two other axes.
+  struct Slab {
+    static constexpr std::size_t widest = 8;
+
+    std::size_t place;  ///< of the first cell: the sums of the family and of the steps from cell (0, 0, 0)
+    std::uint64_t row;
+    Ends limit;
+    std::array<Step, 2> steps;
+    std::array<std::size_t, 2> lengths;  ///< in cells
+    std::array<std::array<Ends, widest>, 2> limits;
+  };
+
+  /// The same for the cells of a slab. In less time than for a block where few numbers are within the limits, and in
+  /// more where many are.
+  std::size_t find(const Slab& slab, Found& found) const;
 
  private:
   /// The hash step from row to row, of which only the highest bits are used.

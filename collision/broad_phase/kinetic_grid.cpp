@@ -100,9 +100,10 @@ bool KineticGrid<Degree>::renew(BodySlot id, const KineticBox<Degree>& kinetic, 
   set_expiry(id, fat.expiry, now);
   BoxGrid::Changes changes;
   const std::optional<BoxSlant> part = slant(body, kinetic, present);
-  // Long boxes are far apart, so one search does not find what overlaps either.
+  // Long boxes are far apart, so one search does not find what overlaps either; and boxes near long ones have to be
+  // compared with many of them, so it pays to do it once.
   const bool alone =
-      body.partners == 0 || ((part || fat_boxes_.slanted(id)) && ended_pairs(id, changes.ended, listener));
+      body.partners == 0 || ((part || fat_boxes_.any_slanted()) && ended_pairs(id, changes.ended, listener));
   fat_boxes_.put(id, fat.box, changes, kinetic.rounding, alone, part ? &*part : nullptr);
   if (alone && body.partners > 0) changes.leave_out_common();
   report(id, changes, now, listener);

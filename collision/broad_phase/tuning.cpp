@@ -29,7 +29,7 @@ void check(const CellTuning& tuning) {
   require(tuning.crowded_chain >= 0 && tuning.crowded_chain <= 1 << 20, "CellTuning.crowded_chain", "in 0 ... 2^20");
   require(tuning.share_for_cells >= 4 && tuning.share_for_cells <= 1 << 20, "CellTuning.share_for_cells",
           "in 4 ... 2^20");
-  require(tuning.guests_per_piece >= 0 && tuning.guests_per_piece <= 1 << 20, "CellTuning.guests_per_piece",
+  require(tuning.guests_per_slab >= 0 && tuning.guests_per_slab <= 1 << 20, "CellTuning.guests_per_slab",
           "in 0 ... 2^20");
   require(tuning.patience > 0 && tuning.patience <= 1 << 20, "CellTuning.patience", "in 1 ... 2^20");
 }

@@ -33,10 +33,10 @@ struct CellTuning {
   /// [no difference where bodies are of one kind; 1 500 bullets and 500 targets: +6.7 % with cells for the spacing of
   /// all]
   std::size_t share_for_cells = 8;
-  /// A prism is followed through finer cells, piece by piece, if boxes of these are more than so many for each piece,
+  /// A prism is followed through finer cells, slab by slab, if boxes of these are more than so many for each slab,
   /// >= 0; else it is compared with all in a large cell.
   /// [Not measured: it matters where fast bodies meet few that are smaller than their way.]
-  std::int64_t guests_per_piece = 32;
+  std::int64_t guests_per_slab = 16;
   /// After so many excess buckets, for each box, rebuilding with smaller cells pays, > 0.
   /// [no difference where bodies are spread evenly]
   std::int64_t patience = 16;

@@ -88,17 +88,26 @@ template <class Motion>
 bool WallTimes<Motion>::certify() {
   const BodySlot slot = times_.top().slot;
   if (wall_[slot] != none_yet) return false;
+  std::array<double, 6> bounds;
+  for (int wall = 0; wall < 6; ++wall) {
+    bounds[static_cast<std::size_t>(wall)] =
+        earliest_wall_time(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now);
+  }
+  // The one that is probably the first comes first: then the bounds of the others are mostly later than its time.
+  const int probable = static_cast<int>(std::min_element(bounds.begin(), bounds.end()) - bounds.begin());
   double first = never;
   wall_[slot] = 0;
-  for (int wall = 0; wall < 6; ++wall) {
+  const auto consider = [&](int wall) {
     const double horizon = std::min(first, clock_.horizon);
-    if (earliest_wall_time(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now) > horizon) {
-      continue;
-    }
+    if (bounds[static_cast<std::size_t>(wall)] > horizon) return;
     const double time = exact_time(slot, wall, horizon);
-    if (!(time < first)) continue;
+    if (time > first || time == never || (time == first && wall > wall_[slot])) return;
     first = time;
     wall_[slot] = static_cast<signed char>(wall);
+  };
+  consider(probable);
+  for (int wall = 0; wall < 6; ++wall) {
+    if (wall != probable) consider(wall);
   }
   times_.set(slot, first);
   return true;

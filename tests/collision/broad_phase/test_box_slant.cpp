@@ -131,13 +131,13 @@ BoxGrid::Meetings random_meetings(Random& random, const BoxGrid::Meetings& among
   return meetings;
 }
 
-/// `guests_per_piece`: of the tuning; `far`: where the boxes are.
-void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests_per_piece, double far = 0) {
-  INFO("seed " << seed << ", sizes over 2^" << sizes << ", guests " << guests_per_piece << ", around " << far);
+/// `guests_per_slab`: of the tuning; `far`: where the boxes are.
+void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests_per_slab, double far = 0) {
+  INFO("seed " << seed << ", sizes over 2^" << sizes << ", guests " << guests_per_slab << ", around " << far);
   constexpr BoxGrid::Id boxes = 60;
   Random random(seed);
   CellTuning tuning;
-  tuning.guests_per_piece = guests_per_piece;
+  tuning.guests_per_slab = guests_per_slab;
   BoxGrid grid(tuning);
   grid.reserve(boxes);
   grid.change_kinds({0xF, 0xF, 0xF, 0xF}, [](BoxGrid::Id) { return BoxGrid::Kind{0}; });
@@ -153,7 +153,7 @@ void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests
     }
     return now;
   };
-  std::size_t seen = 0, slants_that_part = 0, alone_before = 0;
+  std::size_t seen = 0, slants_that_part = 0, alone_before = 0, told_before = 0;
   for (int round = 0; round < 800; ++round) {
     const auto id = static_cast<BoxGrid::Id>(random.below(boxes));
     const bool alone =
@@ -189,8 +189,12 @@ void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests
         one.slant = BoxSlant({middle - half, middle + half}, velocity);
       }
       if (!known.contains(id)) grid.set_kind(id, one.kind);
-      grid.put(id, one.box, changes, 0, known.contains(id) && alone, one.slant ? &*one.slant : nullptr);
+      // The caller may know what the old box overlaps.
+      const bool told = known.contains(id) && !alone && random.one_in(3);
+      if (told) std::erase_if(pairs, [&](const auto& p) { return p.first == id || p.second == id; });
+      grid.put(id, one.box, changes, 0, known.contains(id) && (alone || told), one.slant ? &*one.slant : nullptr);
       alone_before += alone;
+      told_before += told;
       known[id] = one;
     }
     for (const auto other : changes.ended) REQUIRE(pairs.erase(ordered(id, other)) == 1);
@@ -205,15 +209,16 @@ void compare_with_brute_force(std::uint64_t seed, int sizes, std::int64_t guests
   CHECK(seen > 300);
   CHECK(slants_that_part > 10);
   CHECK(alone_before > 20);
+  CHECK(told_before > 20);
 }
 
 TEST_CASE("A box grid tells of the overlaps of slanted boxes, and of kinds that meet", "[box_slant][box_grid]") {
   constexpr std::int64_t always_followed = 0, never_followed = 1 << 20;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    compare_with_brute_force(seed, 0, CellTuning{}.guests_per_piece);
-    for (const std::int64_t guests_per_piece : {always_followed, never_followed}) {
-      compare_with_brute_force(seed, 6, guests_per_piece);
-      compare_with_brute_force(seed, 3, guests_per_piece, -1e13);  // where cells are a few spacings of the doubles
+    compare_with_brute_force(seed, 0, CellTuning{}.guests_per_slab);
+    for (const std::int64_t guests_per_slab : {always_followed, never_followed}) {
+      compare_with_brute_force(seed, 6, guests_per_slab);
+      compare_with_brute_force(seed, 3, guests_per_slab, -1e13);  // where cells are a few spacings of the doubles
     }
   }
 }

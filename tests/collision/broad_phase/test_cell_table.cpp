@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -14,6 +15,30 @@ namespace kds::collision::test_cell_table {
 namespace {
 
 using kds::tests::Random;
+
+/// The same as find(block).
+void find_slab_by_slab(const CellTable& table, const CellTable::Block& block, std::size_t main,
+                       CellTable::Found& found) {
+  const std::array<std::size_t, 2> across{(main + 1) % 3, (main + 2) % 3};
+  for (std::size_t i = 0; i < block.lengths[main]; ++i) {
+    CellTable::Slab slab;
+    slab.place = 0;
+    slab.row = block.family;
+    const auto go = [&](std::size_t axis, std::int64_t cell) {
+      slab.place += static_cast<std::size_t>(cell) * CellTable::step(axis).place;
+      slab.row += static_cast<std::uint64_t>(cell) * CellTable::step(axis).row;
+    };
+    go(main, block.low[main] + static_cast<std::int64_t>(i));
+    slab.limit = block.limits[main][i];
+    for (std::size_t k = 0; k < 2; ++k) {
+      go(across[k], block.low[across[k]]);
+      slab.steps[k] = CellTable::step(across[k]);
+      slab.lengths[k] = block.lengths[across[k]];
+      slab.limits[k] = block.limits[across[k]];
+    }
+    table.find(slab, found);
+  }
+}
 
 TEST_CASE("A cell table holds what was added and not removed", "[cell_table]") {
   Random random(11);
@@ -73,6 +98,9 @@ TEST_CASE("A cell table holds what was added and not removed", "[cell_table]") {
     table.find(block, found);
     seen.insert(found.numbers().begin(), found.numbers().end());
     right = right && there == seen;
+    found.clear();
+    find_slab_by_slab(table, block, random.below(3), found);
+    right = right && there == std::multiset<std::uint32_t>(found.numbers().begin(), found.numbers().end());
   }
   CHECK(right);
   std::size_t held = 0;

@@ -237,6 +237,27 @@ TEST_CASE("Wall times: nothing beyond the horizon, until it is extended") {
   CHECK(times.next_time() == 4);
 }
 
+template <int Degree>
+int first_of_walls_reached_together(const Vector3d& at, const Vector3d& velocity) {
+  const std::optional<Walls> walls(Walls{{0, 0, 0}, {10, 1000, 10}, 1});
+  Parts<Degree> parts;
+  WallTimes<PointMotion<Degree>> times(parts.bodies, walls, parts.clock);
+  times.schedule(parts.add(ball<Degree>(1, at, velocity)));
+  while (times.certify()) {
+  }
+  REQUIRE(times.next_time() == 4);
+  return times.next_wall();
+}
+
+TEST_CASE("Wall times: of walls that are reached at one time it is the one of the lowest number") {
+  // The time of the wall at y = 1000 is the least at first, when it is a bound, since its coordinates are rounded most.
+  CHECK(first_of_walls_reached_together<1>({5, 995, 5}, {1, 1, 0}) == 1);
+  CHECK(first_of_walls_reached_together<1>({5, 995, 5}, {0, 1, -1}) == 3);
+  CHECK(first_of_walls_reached_together<1>({5, 995, 5}, {-1, 1, 1}) == 0);
+  CHECK(first_of_walls_reached_together<2>({5, 995, 5}, {1, 1, 0}) == 1);
+  CHECK(first_of_walls_reached_together<2>({5, 995, 5}, {-1, 1, 1}) == 0);
+}
+
 TEST_CASE("Volumes: a caller's box is asked for when it is renewed, and ends when it says") {
   Parts<1> parts;
   int calls = 0;
