@@ -59,6 +59,17 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
        "kds-collide: --checkpoint: there are no pictures of a run in parts"},
       {"scene.json --checkpoint scene.json --checkpoint-every 1",
        "kds-collide: --checkpoint: is the same file as SCENE"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events c.a.0",
+       "kds-collide: --checkpoint: a part of it is the same file as --events"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events c.b --events-apart",
+       "kds-collide: --checkpoint: a part of it is the same file as a part of --events"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --stats ./c.b.17",
+       "kds-collide: --checkpoint: a part of it is the same file as --stats"},
+      {"scene.json --checkpoint e.unfinished --checkpoint-every 1 --events e",
+       "kds-collide: --events: is the same file as --checkpoint"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events e --events-apart --stats e.1.unfinished",
+       "kds-collide: --events: a part of it is the same file as --stats"},
+      {"scene.json --events e --events-apart --stats e.3", "kds-collide: --events: a part of it is the same file as --stats"},
       {"scene.json --checkpoint c --checkpoint-every 1 --resume", "c: file: cannot be read: No such file or directory"},
       {"scene.json --checkpoint bad.json --checkpoint-every 1 --resume", "bad.json: checkpoint: snapshot: "},
       {"scene.json --kdop 14", "kds-collide: --kdop: more than 6 is for --broad-phase kinetic-sap alone"},
@@ -122,6 +133,29 @@ TEST_CASE("command line: outputs that are one file by way of a link that leads n
   const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events link --stats x");
   CHECK(outcome.code == 2);
   CHECK(outcome.err == "kds-collide: --stats: is the same file as --events\n");
+}
+
+TEST_CASE("command line: no part of an output takes the place of what the scene names, by way of a link or not") {
+  const TemporaryFolder folder;
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto mesh_named = [&](const std::string& name) {
+    folder.write("scene.json", R"({"scene": 1, "end_time": 1, "meshes": {"plate": {"file": ")" + name + R"("}}, "bodies": []})");
+  };
+  const auto refused = [&](const std::string& arguments, const std::string& option) {
+    const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --checkpoint c --checkpoint-every 1 " + arguments);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err == "kds-collide: " + option + " the same file as meshes.plate.file of the scene\n");
+    CHECK(read_file(folder / "plate.obj") == mesh);
+    CHECK_FALSE(std::filesystem::exists(folder / "c"));
+  };
+  folder.write("plate.obj", mesh);
+  mesh_named("plate.obj");
+  std::filesystem::create_symlink("plate.obj", folder / "c.a.0");
+  refused("", "--checkpoint: a part of it is");
+  std::filesystem::remove(folder / "c.a.0");
+  std::filesystem::create_symlink("plate.obj", folder / "c");
+  const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --checkpoint c --checkpoint-every 1");
+  CHECK(outcome.err == "kds-collide: --checkpoint: is the same file as meshes.plate.file of the scene\n");
 }
 
 TEST_CASE("command line: no output takes the place of a mesh of the scene") {
