@@ -137,25 +137,26 @@ TEST_CASE("command line: outputs that are one file by way of a link that leads n
 
 TEST_CASE("command line: no part of an output takes the place of what the scene names, by way of a link or not") {
   const TemporaryFolder folder;
-  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-  const auto mesh_named = [&](const std::string& name) {
-    folder.write("scene.json", R"({"scene": 1, "end_time": 1, "meshes": {"plate": {"file": ")" + name + R"("}}, "bodies": []})");
-  };
-  const auto refused = [&](const std::string& arguments, const std::string& option) {
-    const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --checkpoint c --checkpoint-every 1 " + arguments);
-    CHECK(outcome.code == 2);
-    CHECK(outcome.err == "kds-collide: " + option + " the same file as meshes.plate.file of the scene\n");
-    CHECK(read_file(folder / "plate.obj") == mesh);
-    CHECK_FALSE(std::filesystem::exists(folder / "c"));
-  };
-  folder.write("plate.obj", mesh);
-  mesh_named("plate.obj");
-  std::filesystem::create_symlink("plate.obj", folder / "c.a.0");
-  refused("", "--checkpoint: a part of it is");
-  std::filesystem::remove(folder / "c.a.0");
-  std::filesystem::create_symlink("plate.obj", folder / "c");
-  const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --checkpoint c --checkpoint-every 1");
-  CHECK(outcome.err == "kds-collide: --checkpoint: is the same file as meshes.plate.file of the scene\n");
+  REQUIRE(kds_collide_in(folder, "--generate spheres --bodies 3 --table --output scene.json").code == 0);
+  const std::string scene = read_file(folder / "scene.json"), table = read_file(folder / "scene.h5");
+  std::filesystem::remove(folder / "scene.h5");
+  const std::string name = GENERATE(as<std::string>(), "c.a.0", "c.b.12", "e.1", "e.0.unfinished");
+  const bool linked = GENERATE(false, true);
+  INFO(name << ", " << linked);
+  folder.write(name, table);
+  if (linked) {
+    std::filesystem::create_symlink(name, folder / "scene.h5");
+  } else {
+    folder.write("scene.json", std::string(scene).replace(scene.find("scene.h5"), 8, name));
+  }
+  const Outcome outcome = kds_collide_in(
+      folder, "scene.json --quiet --checkpoint c --checkpoint-every 1 --events e --events-apart --until 10");
+  CHECK(outcome.code == 2);
+  const std::string option = name[0] == 'c' ? "--checkpoint" : "--events";
+  CHECK(outcome.err ==
+        "kds-collide: " + option + ": a part of it is the same file as tables[0].file of the scene\n");
+  CHECK(read_file(folder / name) == table);
+  CHECK(folder.file_count() == (linked ? 3 : 2));
 }
 
 TEST_CASE("command line: no output takes the place of a mesh of the scene") {
