@@ -84,13 +84,13 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path file, kds::collision::T
   }
   turn_ = team_.of_first(turn.value_or(0));
   // Whether they can be written is found out now, and not after the hours that are to be saved.
-  if (team_.rank() == 0) OutputFile(file_.string());
-  OutputFile(bodies_path(file_, 1 - turn_, team_.rank()));
+  if (team_.rank() == 0) OutputFile(file_.string(), 0);
+  OutputFile(bodies_path(file_, 1 - turn_, team_.rank()), 0);
 }
 
 void CheckpointWriter::write_bodies(const std::vector<char>& block) {
   if (!part_) {
-    part_ = std::make_unique<OutputFile>(bodies_path(file_, 1 - turn_, team_.rank()));
+    part_ = std::make_unique<OutputFile>(bodies_path(file_, 1 - turn_, team_.rank()), 0);
     part_->write(part_of_checkpoint.magic);
     place_ = {.bytes = 0, .checksum = first_chain};
   }
@@ -104,9 +104,9 @@ void CheckpointWriter::commit(Checkpoint checkpoint) {
     Content content{checkpoint};
     std::ostringstream text;
     write(text, save(content));
-    OutputFile output(file_.string());
+    OutputFile output(file_.string(), 0);
     output.write(text.view());
-    output.commit_to_disk();
+    output.commit();
   }
   team_.of_first(true);
   // No file names those before any more. Of this run each process has written one, at most.
@@ -125,7 +125,7 @@ std::vector<FilePlace> CheckpointWriter::places() {
   kds::collision::Letters letters;
   if (part_) {
     place_.bytes = part_->flush();
-    part_->commit_to_disk();
+    part_->commit();
     part_.reset();
     all.resize(team_.count());
     all[team_.rank()] = place_;
@@ -135,17 +135,19 @@ std::vector<FilePlace> CheckpointWriter::places() {
   return all;
 }
 
-/// Files of bodies that the checkpoint does not name which is there now, of so many processes: of the one before it, and
-/// of runs of more processes that were ended. Each process removes some.
+/// Files of bodies that the checkpoint does not name which is there now, of so many processes: of the one before it,
+/// and of runs that were ended. Each process removes some.
 void CheckpointWriter::remove_others(std::size_t named) const {
   for (const std::uint64_t turn : {turn_, 1 - turn_}) {
     const std::string parts = file_.string() + turn_ending(turn);
-    for (const std::size_t number : part_numbers(parts, "")) {
-      const bool is_named = turn != turn_ && number < named;
-      const std::filesystem::path left = part_path(parts, number);
-      if (is_named || number % team_.count() != team_.rank() || !has_format(left, part_of_checkpoint)) continue;
-      std::error_code ignored;
-      std::filesystem::remove(left, ignored);
+    for (const char* const ending : {"", ".unfinished"}) {
+      for (const std::size_t number : part_numbers(parts, ending)) {
+        const bool is_named = turn != turn_ && number < named && *ending == 0;
+        const std::filesystem::path left = part_path(parts, number) + ending;
+        if (is_named || number % team_.count() != team_.rank() || !has_format(left, part_of_checkpoint)) continue;
+        std::error_code ignored;
+        std::filesystem::remove(left, ignored);
+      }
     }
   }
 }

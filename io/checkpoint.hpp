@@ -31,14 +31,14 @@ struct SavedOption {
 /// A run as it was at a time, between two events: what is in the file of a checkpoint. Of a scene that is divided the
 /// bodies are in files beside it, one of each process, in its place.
 struct Checkpoint {
-  std::uint64_t run = 0;                ///< a random number: that of the run, in all its parts
-  std::vector<std::uint64_t> scene{};   ///< the checksums of Scene::sources
-  std::vector<SavedOption> options{};   ///< those that decide events
-  double time = 0;                      ///< s
-  std::optional<FilePlace> events{};    ///< where the events are, if one process writes all
-  std::vector<FilePlace> parts{};       ///< in their place where each process writes its own: where these are, by rank
-  std::uint64_t turn = 0;               ///< 0 or 1, that of the checkpoint before it is the other: part of the names
-  std::vector<FilePlace> bodies{};      ///< the length and the checksum of each file of bodies, by rank; empty: in `world`
+  std::uint64_t run = 0;               ///< a random number: that of the run, in all its parts
+  std::vector<std::uint64_t> scene{};  ///< the checksums of Scene::sources
+  std::vector<SavedOption> options{};  ///< those that decide events
+  double time = 0;                     ///< s
+  std::optional<FilePlace> events{};   ///< where the events are, if one process writes all
+  std::vector<FilePlace> parts{};      ///< in their place where each process writes its own: where these are, by rank
+  std::uint64_t turn = 0;              ///< 0 or 1, that of the checkpoint before it is the other: part of the names
+  std::vector<FilePlace> bodies{};  ///< the length and the checksum of each file of bodies, by rank; empty: in `world`
   Snapshot world;
 };
 

@@ -234,12 +234,6 @@ void OutputFile::commit() {
   if (goes_on_) sync_folder_of(target_);
 }
 
-void OutputFile::commit_to_disk() {
-  sync();
-  commit();
-  sync_folder_of(target_);
-}
-
 void OutputFile::refuse_to_go_on(const std::string& why) const {
   throw OutputError(begun_path(path_).string() + ": file: cannot be gone on with: " + why, true);
 }

@@ -48,9 +48,9 @@ class OutputFile {
   explicit OutputFile(const std::string& path);
   /// One that may take several runs to write: to unfinished_path(), which stays if the run ends between flush() and
   /// commit(), so that a later one can go on; what no flush() tells of is removed. What flush() and commit() tell of is
-  /// on the disk, too. `from`: of a run that begins nothing, and there must be no such file. Of one that goes on so many
-  /// bytes of what there is are kept, and what follows them is dropped, by the first write(), flush() or close(): until
-  /// then nothing is changed. If 0, there may be nothing.
+  /// on the disk, too, and outlasts a power cut. `from`: of a run that begins nothing, and there must be no such file.
+  /// Of one that goes on so many bytes of what there is are kept, and what follows them is dropped, by the first
+  /// write(), flush() or close(): until then nothing is changed. If 0, there may be nothing.
   OutputFile(const std::string& path, std::optional<std::uint64_t> from);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
@@ -61,8 +61,6 @@ class OutputFile {
   /// appear or none, but for a rename that fails in between: a folder that others have meanwhile changed.
   void close();
   void commit();
-  /// The same, and it is on the disk then, whatever happens to the machine.
-  void commit_to_disk();
   /// How many bytes have been written; they are in the file, whatever happens to this process.
   std::uint64_t flush();
   /// Throws OutputError: what there is of a file that takes several runs to write is not what it should be.
@@ -74,10 +72,10 @@ class OutputFile {
   [[noreturn]] void fail(int error, bool on_opening = false) const;
 
   std::string path_;
-  std::filesystem::path target_;     ///< path_, with symbolic links resolved
-  std::filesystem::path temporary_;  ///< empty where path_ is written directly
-  bool stays_ = false;               ///< the temporary file, if there is no commit()
-  bool goes_on_ = false;             ///< a later run may go on with it
+  std::filesystem::path target_;               ///< path_, with symbolic links resolved
+  std::filesystem::path temporary_;            ///< empty where path_ is written directly
+  bool stays_ = false;                         ///< the temporary file, if there is no commit()
+  bool goes_on_ = false;                       ///< a later run may go on with it
   std::optional<std::uint64_t> drops_from_{};  ///< nothing has been changed: what is from here on is to be dropped
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes

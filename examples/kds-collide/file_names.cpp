@@ -74,8 +74,12 @@ std::vector<FileName> files_written(const Arguments& arguments) {
   } else if (in_parts && !arguments.events.empty()) {
     add("--events", kds::io::unfinished_path(arguments.events));
   }
+  if (!in_parts) return files;
+  add("--checkpoint", kds::io::unfinished_path(arguments.checkpoint));
   for (const char* const turn : {".a", ".b"}) {
-    if (in_parts) files.push_back({"--checkpoint", arguments.checkpoint + turn, true});
+    for (const char* const ending : {"", ".unfinished"}) {
+      files.push_back({"--checkpoint", arguments.checkpoint + turn, true, ending});
+    }
   }
   return files;
 }

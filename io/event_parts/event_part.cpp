@@ -75,8 +75,8 @@ void EventPart::begin() {
   if (!has_magic_) file_.write(part_of_events.magic);
   if (of_.rank >= of_.processes) return;
   std::string content;
-  append_bytes(content, SectionHead{KDS_VERSION_NUMBER, of_.scene, of_.bodies, of_.run, of_.section, of_.rank,
-                                    of_.processes});
+  append_bytes(content,
+               SectionHead{KDS_VERSION_NUMBER, of_.scene, of_.bodies, of_.run, of_.section, of_.rank, of_.processes});
   write(BlockKind::section, content);
 }
 

@@ -146,7 +146,8 @@ void EventParts::begin_section(const std::string& content) {
     std::string its;
     read_of(rank, BlockKind::section, its);
     const SectionHead head = head_of(rank, its);
-    if (head.run != run_ || head.section != first.section || head.processes != processes_) part(rank).refuse("is of another run");
+    if (head.run != run_ || head.section != first.section || head.processes != processes_)
+      part(rank).refuse("is of another run");
   }
 }
 

@@ -20,8 +20,7 @@ std::shared_ptr<const Mesh> read_mesh(const JsonNode& node, const std::filesyste
   try {
     MeshData data = read_mesh_file(folder / name);
     for (const std::string& mended : mend(data)) scene.warnings.push_back(node.path() + ": " + name + ": " + mended);
-    scene.sources.push_back(
-        {node.path(), name, chained(checksum_of(data.vertices), checksum_of(data.triangles))});
+    scene.sources.push_back({node.path(), name, chained(checksum_of(data.vertices), checksum_of(data.triangles))});
     return std::make_shared<const Mesh>(std::move(data.vertices), std::move(data.triangles));
   } catch (const MeshFileError& error) {
     node.fail(name + ": " + error.what());

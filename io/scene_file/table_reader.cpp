@@ -209,7 +209,8 @@ ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, 
         rows.number(table.rolling_friction, "rolling_friction", row, of_scene.rolling_friction, friction_problem);
   }
   scene.turning = scene.turning || !table.angular_velocity.empty();
-  scene.sources.push_back({node["file"].path(), read.file, checksum_of_rows(table, read.first_row, read.rows_read), true});
+  scene.sources.push_back(
+      {node["file"].path(), read.file, checksum_of_rows(table, read.first_row, read.rows_read), true});
   return read;
 }
 

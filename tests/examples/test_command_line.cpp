@@ -133,6 +133,7 @@ TEST_CASE("command line: scenes that are divided have the same events and the sa
       CHECK(one[count] == divided[count]);
     }
     CHECK(divided["domains"] > 1);
+    if (options == "--domains 2") CHECK(divided["broad_phase"] == "grid");
     CHECK(!one.contains("domains"));
   }
   const bool few_bodies = events("--domains 0") == expected;

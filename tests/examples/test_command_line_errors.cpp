@@ -69,7 +69,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
        "kds-collide: --events: is the same file as --checkpoint"},
       {"scene.json --checkpoint c --checkpoint-every 1 --events e --events-apart --stats e.1.unfinished",
        "kds-collide: --events: a part of it is the same file as --stats"},
-      {"scene.json --events e --events-apart --stats e.3", "kds-collide: --events: a part of it is the same file as --stats"},
+      {"scene.json --events e --events-apart --stats e.3",
+       "kds-collide: --events: a part of it is the same file as --stats"},
       {"scene.json --checkpoint c --checkpoint-every 1 --resume", "c: file: cannot be read: No such file or directory"},
       {"scene.json --checkpoint bad.json --checkpoint-every 1 --resume", "bad.json: checkpoint: snapshot: "},
       {"scene.json --kdop 14", "kds-collide: --kdop: more than 6 is for --broad-phase kinetic-sap alone"},
@@ -153,8 +154,7 @@ TEST_CASE("command line: no part of an output takes the place of what the scene 
       folder, "scene.json --quiet --checkpoint c --checkpoint-every 1 --events e --events-apart --until 10");
   CHECK(outcome.code == 2);
   const std::string option = name[0] == 'c' ? "--checkpoint" : "--events";
-  CHECK(outcome.err ==
-        "kds-collide: " + option + ": a part of it is the same file as tables[0].file of the scene\n");
+  CHECK(outcome.err == "kds-collide: " + option + ": a part of it is the same file as tables[0].file of the scene\n");
   CHECK(read_file(folder / name) == table);
   CHECK(folder.file_count() == (linked ? 3 : 2));
 }

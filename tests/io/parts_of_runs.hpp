@@ -108,7 +108,8 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
   std::vector<std::vector<char>> bodies;  // of the next checkpoint
   const auto work = [&](kds::collision::Processes& processes) {
     kds::collision::Team team(&processes);
-    const PartOf of{.scene = scene_number, .bodies = scene.bodies.size(), .run = options.run, .section = options.section};
+    const PartOf of{
+        .scene = scene_number, .bodies = scene.bodies.size(), .run = options.run, .section = options.section};
     auto parts = progress ? EventsApart(file, of, team, before.parts) : EventsApart(file, of, team);
     EventSinks sinks;
     if (team.rank() == 0) sinks.add(parts.own());

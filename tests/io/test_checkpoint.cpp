@@ -290,12 +290,14 @@ TEST_CASE("checkpoint: a process that ends while one is written leaves the one b
   CHECK(read_blocks(file, 1) == before);
   // The next one, of fewer processes, leaves nothing of them, wherever there are gaps; but of others.
   folder.write("run.state.a.7", read_file(other.string() + ".b.2"));
+  folder.write("run.state.a.8.unfinished", read_file(other.string() + ".b.2").substr(0, 20));
   folder.write("run.state.b.9", "a table, say");
   write_by(2, file, 1, "z");
   CHECK(read_blocks(file, 1) == Blocks{"z0-0.0", "z0-1.0", "z0-1.1"});
   CHECK_FALSE(std::filesystem::exists(file.string() + ".b.2"));
   CHECK_FALSE(std::filesystem::exists(file.string() + ".a.0"));
   CHECK_FALSE(std::filesystem::exists(file.string() + ".a.7"));
+  CHECK_FALSE(std::filesystem::exists(file.string() + ".a.8.unfinished"));
   CHECK(std::filesystem::exists(file.string() + ".b.9"));
 }
 

@@ -220,7 +220,8 @@ TEST_CASE("event parts: what a run has left of more processes is removed, and no
   REQUIRE(std::filesystem::exists(file + ".4.unfinished"));
   std::filesystem::remove(file + ".3.unfinished");
   std::filesystem::rename(file + ".2.unfinished", file + ".2");
-  const std::string kept[] = {"events.csv.7", "events.csv.8.unfinished", "events.csv.04", "events.csv.9", "events.csv.x"};
+  const std::string kept[] = {"events.csv.7", "events.csv.8.unfinished", "events.csv.04", "events.csv.9",
+                              "events.csv.x"};
   for (const std::string& name : kept) {
     folder.write(name, name == "events.csv.9" ? "time,kind\n" : read_file(other + ".0"));
   }
@@ -360,10 +361,8 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
   const Scene scene = random_scene(5);
   const auto merged = [&](const std::vector<std::vector<DomainEvent>>& logs) {
     for (std::size_t rank = 0; rank < logs.size(); ++rank) {
-      EventPart part(part_path(file, rank), {.scene = scene_number,
-                                              .bodies = scene.bodies.size(),
-                                              .rank = rank,
-                                              .processes = logs.size()});
+      EventPart part(part_path(file, rank),
+                     {.scene = scene_number, .bodies = scene.bodies.size(), .rank = rank, .processes = logs.size()});
       part.on_step({.domains = logs.size(), .first = rank, .logs = {logs[rank]}});
       part.close();
       part.commit();

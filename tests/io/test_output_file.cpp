@@ -105,7 +105,8 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   CHECK(length == 4);
   CHECK(!std::filesystem::exists(path));
   CHECK(read_file(unfinished) == "one,what is dropped");
-  CHECK_THROWS_WITH(OutputFile(path, std::nullopt), unfinished + ": file: is there already, of a run that has not ended");
+  CHECK_THROWS_WITH(OutputFile(path, std::nullopt),
+                    unfinished + ": file: is there already, of a run that has not ended");
   CHECK_THROWS_WITH(OutputFile(path, 20), unfinished +
                                               ": file: cannot be gone on with: it has 19 bytes, and the run had "
                                               "written 20");
@@ -132,9 +133,7 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   std::filesystem::remove(path);
   CHECK_THROWS_WITH(OutputFile(path, 4), unfinished + ": file: cannot be gone on with: No such file or directory");
   folder.write("a.txt.unfinished", "left");
-  {
-    const OutputFile none(path, 0);
-  }
+  { const OutputFile none(path, 0); }
   CHECK(read_file(unfinished) == "left");
   OutputFile(path, 0).commit();
   CHECK(read_file(path).empty());
