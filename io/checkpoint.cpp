@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -19,19 +18,26 @@
 namespace kds::io {
 namespace {
 
+/// It changes with the members, so that bytes of another layout are refused as such.
+constexpr int checkpoint_form = 2;
+
 /// All of a checkpoint, for save() and restore().
 struct Content {
   Checkpoint& checkpoint;
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive.tag("checkpoint of kds-collide, version " + std::to_string(KDS_VERSION_NUMBER));
+    archive.tag("checkpoint of kds-collide, version " + std::to_string(KDS_VERSION_NUMBER) + ", form " +
+                std::to_string(checkpoint_form));
     std::vector<char> world = checkpoint.world.bytes();
-    archive(checkpoint.scene, checkpoint.events, checkpoint.parts, checkpoint.turn, checkpoint.bodies, world);
+    archive(checkpoint.run, checkpoint.scene, checkpoint.options, checkpoint.time, checkpoint.events, checkpoint.parts,
+            checkpoint.turn, checkpoint.bodies, world);
     if (checkpoint.turn > 1) throw std::runtime_error("snapshot: it has no such turn");
     checkpoint.world = Snapshot(std::move(world));
   }
 };
+
+const char* turn_ending(std::uint64_t turn) { return turn == 0 ? ".a" : ".b"; }
 
 std::ifstream opened(const std::filesystem::path& file) {
   const auto fail = [&](const char* why) {
@@ -46,13 +52,24 @@ std::ifstream opened(const std::filesystem::path& file) {
 
 }  // namespace
 
-std::uint64_t fingerprint(const std::filesystem::path& file) {
-  std::ifstream in = opened(file);
-  return kds::detail::checksum({std::istreambuf_iterator<char>(in), {}});
+std::vector<std::uint64_t> checksums_of(const Scene& scene) {
+  std::vector<std::uint64_t> all;
+  for (const SceneSource& source : scene.sources) all.push_back(source.checksum);
+  return all;
+}
+
+void require_same_scene(const Scene& scene, const std::filesystem::path& file, const Checkpoint& checkpoint) {
+  const char* const changed = "is not what it was when the checkpoint was written";
+  for (std::size_t i = 0; i < scene.sources.size(); ++i) {
+    const SceneSource& source = scene.sources[i];
+    if (i < checkpoint.scene.size() && checkpoint.scene[i] == source.checksum) continue;
+    if (source.where.empty()) throw SceneError(file.string(), "file", changed);
+    throw SceneError(file.string(), source.where, source.file + ": " + changed);
+  }
 }
 
 std::string bodies_path(const std::filesystem::path& file, std::uint64_t turn, std::size_t rank) {
-  return part_path(file.string() + (turn == 0 ? ".a" : ".b"), rank);
+  return part_path(file.string() + turn_ending(turn), rank);
 }
 
 CheckpointWriter::CheckpointWriter(std::filesystem::path file, kds::collision::Team& team,
@@ -67,17 +84,17 @@ CheckpointWriter::CheckpointWriter(std::filesystem::path file, kds::collision::T
   }
   turn_ = team_.of_first(turn.value_or(0));
   // Whether they can be written is found out now, and not after the hours that are to be saved.
-  if (team_.rank() == 0) OutputFile(file_.string());
-  OutputFile(bodies_path(file_, 1 - turn_, team_.rank()));
+  if (team_.rank() == 0) OutputFile(file_.string(), 0);
+  OutputFile(bodies_path(file_, 1 - turn_, team_.rank()), 0);
 }
 
 void CheckpointWriter::write_bodies(const std::vector<char>& block) {
   if (!part_) {
-    part_ = std::make_unique<OutputFile>(bodies_path(file_, 1 - turn_, team_.rank()));
+    part_ = std::make_unique<OutputFile>(bodies_path(file_, 1 - turn_, team_.rank()), 0);
     part_->write(part_of_checkpoint.magic);
-    place_ = {.bytes = 0, .chain = first_chain};
+    place_ = {.bytes = 0, .checksum = first_chain};
   }
-  write_block(*part_, place_.chain, BlockKind::bodies, {block.data(), block.size()});
+  write_block(*part_, place_.checksum, BlockKind::bodies, {block.data(), block.size()});
 }
 
 void CheckpointWriter::commit(Checkpoint checkpoint) {
@@ -87,25 +104,29 @@ void CheckpointWriter::commit(Checkpoint checkpoint) {
     Content content{checkpoint};
     std::ostringstream text;
     write(text, save(content));
-    OutputFile output(file_.string());
+    OutputFile output(file_.string(), 0);
     output.write(text.view());
     output.commit();
   }
   team_.of_first(true);
-  remove_parts(turn_, team_.rank());  // No file names them any more.
+  // No file names those before any more. Of this run each process has written one, at most.
+  std::error_code ignored;
+  if (std::exchange(is_first_, false)) {
+    remove_others(checkpoint.bodies.size());
+  } else {
+    std::filesystem::remove(bodies_path(file_, turn_, team_.rank()), ignored);
+  }
   turn_ = checkpoint.turn;
 }
 
 /// The files of bodies are whole, and in their places, when this returns. In process 0: what they are, by rank.
-std::vector<PartPlace> CheckpointWriter::places() {
-  std::vector<PartPlace> all;
+std::vector<FilePlace> CheckpointWriter::places() {
+  std::vector<FilePlace> all;
   kds::collision::Letters letters;
   if (part_) {
     place_.bytes = part_->flush();
     part_->commit();
     part_.reset();
-    // Those of a run of more processes that was ended before its checkpoint was there.
-    remove_parts(1 - turn_, team_.rank() + team_.count());
     all.resize(team_.count());
     all[team_.rank()] = place_;
     if (team_.rank() > 0) letters.to(0)(place_);
@@ -114,10 +135,21 @@ std::vector<PartPlace> CheckpointWriter::places() {
   return all;
 }
 
-/// The files of bodies of the processes `from`, and others that this one answers for.
-void CheckpointWriter::remove_parts(std::uint64_t turn, std::size_t from) const {
-  std::error_code ignored;
-  while (std::filesystem::remove(bodies_path(file_, turn, from), ignored)) from += team_.count();
+/// Files of bodies that the checkpoint does not name which is there now, of so many processes: of the one before it,
+/// and of runs that were ended. Each process removes some.
+void CheckpointWriter::remove_others(std::size_t named) const {
+  for (const std::uint64_t turn : {turn_, 1 - turn_}) {
+    const std::string parts = file_.string() + turn_ending(turn);
+    for (const char* const ending : {"", ".unfinished"}) {
+      for (const std::size_t number : part_numbers(parts, ending)) {
+        const bool is_named = turn != turn_ && number < named && *ending == 0;
+        const std::filesystem::path left = part_path(parts, number) + ending;
+        if (is_named || number % team_.count() != team_.rank() || !has_format(left, part_of_checkpoint)) continue;
+        std::error_code ignored;
+        std::filesystem::remove(left, ignored);
+      }
+    }
+  }
 }
 
 Checkpoint read_checkpoint(const std::filesystem::path& file) {
@@ -141,13 +173,13 @@ CheckpointReader::~CheckpointReader() = default;
 void CheckpointReader::check() const {
   for (std::size_t part = rank_; part < bodies_.size(); part += processes_) {
     BlockFile file(path(part), part_of_checkpoint);
-    const PartPlace& place = bodies_[part];
+    const FilePlace& place = bodies_[part];
     if (file.size() != place.bytes) {
       file.refuse("has " + std::to_string(file.size()) + " bytes, and there were " + std::to_string(place.bytes) +
                   ": it has been cut, or is of another checkpoint");
     }
     for (std::string content; !file.at_end();) file.next(content);
-    if (file.chain() != place.chain) file.refuse("is of another checkpoint");
+    if (file.place().checksum != place.checksum) file.refuse("is of another checkpoint");
   }
 }
 

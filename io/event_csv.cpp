@@ -2,6 +2,10 @@
 
 #include "io/number_text.hpp"
 
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+
 namespace kds::io {
 namespace {
 
@@ -53,8 +57,21 @@ EventCsv::EventCsv(const std::string& path, const Scene& scene) : file_(path), s
   buffer_ = event_csv_header;
 }
 
-EventCsv::EventCsv(const std::string& path, const Scene& scene, std::uint64_t from) : file_(path, from), scene_(scene) {
-  if (from == 0) buffer_ = event_csv_header;
+EventCsv::EventCsv(const std::string& path, const Scene& scene, const std::optional<FilePlace>& from)
+    : file_(path, from ? std::optional(from->bytes) : std::nullopt), scene_(scene) {
+  if (!from) {
+    buffer_ = event_csv_header;
+    return;
+  }
+  std::ifstream in(begun_path(path), std::ios::binary);
+  std::string bytes(std::size_t{1} << 20, '\0');
+  for (std::uint64_t left = from->bytes; left > 0;) {
+    const std::uint64_t count = std::min<std::uint64_t>(left, bytes.size());
+    if (!in.read(bytes.data(), static_cast<std::streamsize>(count))) file_.refuse_to_go_on("it cannot be read");
+    checksum_.add({bytes.data(), count});
+    left -= count;
+  }
+  if (checksum_.value() != from->checksum) file_.refuse_to_go_on("it is not what the run had written");
 }
 
 void EventCsv::on_event(const Event& event) {
@@ -64,13 +81,16 @@ void EventCsv::on_event(const Event& event) {
 }
 
 void EventCsv::write() {
-  if (!buffer_.empty()) file_.write(buffer_);
+  if (buffer_.empty()) return;
+  checksum_.add(buffer_);
+  file_.write(buffer_);
   buffer_.clear();
 }
 
-std::uint64_t EventCsv::flush() {
+FilePlace EventCsv::flush() {
   write();
-  return file_.flush();
+  const std::uint64_t bytes = file_.flush();
+  return {bytes, checksum_.value()};
 }
 
 void EventCsv::close() {

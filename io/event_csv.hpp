@@ -1,10 +1,11 @@
 // Events as lines of comma-separated values.
 #pragma once
 
+#include "io/checksum.hpp"
 #include "io/events.hpp"
 #include "io/output_file.hpp"
 
-#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace kds::io {
@@ -19,11 +20,12 @@ void append_csv_line(std::string& text, const Event& event, const Scene& scene);
 class EventCsv final : public EventSink {
  public:
   EventCsv(const std::string& path, const Scene& scene);
-  /// Of a run that goes on after so many bytes; of one that begins, 0 (OutputFile).
-  EventCsv(const std::string& path, const Scene& scene, std::uint64_t from);
+  /// Of a run that may be written in several parts: see OutputFile. `from`: what flush() returned when the state was
+  /// written from which the run goes on. Throws OutputError if the file has not these bytes.
+  EventCsv(const std::string& path, const Scene& scene, const std::optional<FilePlace>& from);
   void on_event(const Event& event) override;
-  /// How many bytes there are; they are in the file then.
-  std::uint64_t flush();
+  /// How many bytes there are, and a Checksum of them; they are in the file then.
+  FilePlace flush();
   void close();
   void commit();
 
@@ -33,6 +35,7 @@ class EventCsv final : public EventSink {
   OutputFile file_;
   const Scene& scene_;
   std::string buffer_;
+  Checksum checksum_;  ///< of all that has been written
 };
 
 }  // namespace kds::io

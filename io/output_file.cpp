@@ -25,6 +25,25 @@ std::array<std::atomic<char*>, most_files> open_temporaries{};
 /// Temporary files of one name that processes which were killed may have left: looked past.
 constexpr int most_left = 1000;
 
+/// Waits until what is in a file is on the disk, where the system can. Returns the error, 0 if there is none.
+int sync_file(int descriptor) {
+#if defined(_POSIX_FSYNC) && _POSIX_FSYNC > 0
+  if (fsync(descriptor) != 0 && errno != EINVAL) return errno;  // EINVAL: this file system has nothing to wait for.
+#else
+  static_cast<void>(descriptor);
+#endif
+  return 0;
+}
+
+/// The same of the names in the folder of a file; what a file system does not offer is no error.
+void sync_folder_of(const std::filesystem::path& file) {
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  const int descriptor = open(folder.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  sync_file(descriptor);
+  ::close(descriptor);
+}
+
 extern "C" void remove_temporaries(int signal) {
   for (const auto& name : open_temporaries) {
     if (const char* file = name.load()) unlink(file);
@@ -66,6 +85,29 @@ std::filesystem::path past_dangling_links(const std::filesystem::path& path) {
   return file;
 }
 
+namespace {
+
+/// Where it leads if it is a symbolic link.
+std::filesystem::path resolved(const std::string& path) {
+  const std::filesystem::path target = past_dangling_links(path);
+  std::error_code error;
+  if (!std::filesystem::is_symlink(target, error)) return target;
+  const std::filesystem::path end = std::filesystem::canonical(target, error);
+  return error ? target : end;
+}
+
+}  // namespace
+
+std::filesystem::path unfinished_path(const std::string& path) { return resolved(path).string() + ".unfinished"; }
+
+std::filesystem::path begun_path(const std::string& path) {
+  std::error_code ignored;
+  const std::filesystem::path unfinished = unfinished_path(path), whole = resolved(path);
+  const bool has_ended =
+      !std::filesystem::exists(unfinished, ignored) && std::filesystem::is_regular_file(whole, ignored);
+  return has_ended ? whole : unfinished;
+}
+
 OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dangling_links(path)) {
   if (path_ == "-") {
     file_ = stdout;
@@ -104,34 +146,32 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(past_dang
   file_ = fdopen(descriptor, "wb");
 }
 
-OutputFile::OutputFile(const std::string& path, std::uint64_t from)
-    : path_(path), target_(past_dangling_links(path)), stays_(from > 0), goes_on_(true) {
-  const std::filesystem::path unfinished = target_.string() + ".unfinished";
-  const auto refuse = [&](const std::string& why) {
-    throw OutputError(unfinished.string() + ": file: cannot be gone on with: " + why, true);
-  };
+OutputFile::OutputFile(const std::string& path, std::optional<std::uint64_t> from)
+    : path_(path), target_(resolved(path)), goes_on_(true) {
   std::error_code error;
   const file_type kind = std::filesystem::status(target_, error).type();
   if (kind != file_type::regular && kind != file_type::not_found) fail(EINVAL, true);
-  file_ = std::fopen(unfinished.c_str(), from > 0 ? "r+b" : "wbx");
+  const std::filesystem::path unfinished = unfinished_path(path);
+  const std::filesystem::path begun = from.value_or(0) > 0 ? begun_path(path) : unfinished;
+  if (from) file_ = std::fopen(begun.c_str(), "r+b");
+  if (file_) {
+    stays_ = true;
+    drops_from_ = from;
+    temporary_ = unfinished;
+    const std::uintmax_t size = std::filesystem::file_size(begun, error);
+    if (!error && size >= *from) return;
+    std::fclose(std::exchange(file_, nullptr));
+    refuse_to_go_on("it has " + std::to_string(error ? 0 : size) + " bytes, and the run had written " +
+                    std::to_string(*from));
+  }
+  if (from.value_or(0) > 0) refuse_to_go_on(std::strerror(errno));
+  file_ = std::fopen(unfinished.c_str(), "wbx");
   if (!file_) {
-    const int reason = errno;
-    if (from > 0) refuse(std::strerror(reason));
-    if (reason != EEXIST) fail(reason, true);
+    if (errno != EEXIST) fail(errno, true);
     throw OutputError(unfinished.string() + ": file: is there already, of a run that has not ended", true);
   }
   temporary_ = unfinished;
-  if (from == 0) {
-    slot_ = remember(unfinished);
-    return;
-  }
-  const std::uintmax_t size = std::filesystem::file_size(unfinished, error);
-  if (error || size < from) {
-    refuse("it has " + std::to_string(error ? 0 : size) + " bytes, and the run had written " + std::to_string(from));
-  }
-  std::filesystem::resize_file(unfinished, from, error);
-  if (error) refuse(error.message());
-  std::fseek(file_, 0, SEEK_END);
+  slot_ = remember(unfinished);
 }
 
 OutputFile::~OutputFile() {
@@ -144,22 +184,41 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
+  if (drops_from_) drop();
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail(errno);
 }
 
-std::uint64_t OutputFile::flush() {
+/// The file has its place, and what was written before the state from which the run goes on.
+void OutputFile::drop() {
+  const std::uint64_t from = *std::exchange(drops_from_, std::nullopt);
+  std::error_code error;
+  if (!std::filesystem::exists(temporary_, error)) std::filesystem::rename(target_, temporary_, error);
+  if (error) fail(error.value());
+  if (ftruncate(fileno(file_), static_cast<off_t>(from)) != 0 || fseeko(file_, 0, SEEK_END) != 0) fail(errno);
+}
+
+void OutputFile::sync() {
   if (std::fflush(file_) != 0) fail(errno);
-  if (goes_on_ && !stays_) {
-    stays_ = true;
+  if (const int error = sync_file(fileno(file_))) fail(error);
+}
+
+std::uint64_t OutputFile::flush() {
+  if (drops_from_) drop();
+  if (goes_on_) {
+    sync();
+    if (!std::exchange(stays_, true)) sync_folder_of(temporary_);
     forget(std::exchange(slot_, -1));
   }
-  return static_cast<std::uint64_t>(std::ftell(file_));
+  if (std::fflush(file_) != 0) fail(errno);
+  return static_cast<std::uint64_t>(ftello(file_));
 }
 
 void OutputFile::close() {
   if (!file_) return;
+  if (drops_from_) drop();
   if (std::fflush(file_) != 0) fail(errno);
   if (file_ == stdout) return;
+  if (goes_on_) sync();
   std::FILE* file = file_;
   file_ = nullptr;
   if (std::fclose(file) != 0) fail(errno);
@@ -172,6 +231,11 @@ void OutputFile::commit() {
   std::filesystem::rename(temporary_, target_, error);
   if (error) fail(error.value());
   temporary_.clear();
+  if (goes_on_) sync_folder_of(target_);
+}
+
+void OutputFile::refuse_to_go_on(const std::string& why) const {
+  throw OutputError(begun_path(path_).string() + ": file: cannot be gone on with: " + why, true);
 }
 
 void OutputFile::fail(int error, bool on_opening) const {

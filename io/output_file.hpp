@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,6 +20,18 @@ struct OutputError : std::runtime_error {
 /// Where `path` leads if it is a symbolic link to a file that is not there yet; else `path`.
 std::filesystem::path past_dangling_links(const std::filesystem::path& path);
 
+/// Where a file is until it is whole that takes several runs to write: `path` with ".unfinished" after it.
+std::filesystem::path unfinished_path(const std::string& path);
+/// Where that is which a run has written that is to be gone on with: there, or in the place of the whole file, if the
+/// run has come so far.
+std::filesystem::path begun_path(const std::string& path);
+
+/// So many bytes of a file, from its beginning on.
+struct FilePlace {
+  std::uint64_t bytes = 0;
+  std::uint64_t checksum = 0;  ///< of these bytes; who writes the file says which
+};
+
 /// For programs, not for libraries in them: from now on temporary files of OutputFile, up to 8 at a time, are removed
 /// when the process is told to stop (SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any
 /// more (SIGPIPE); a file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other.
@@ -33,11 +46,12 @@ void remove_temporaries_at_signals();
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
-  /// One that may take several runs to write: to `path` with ".unfinished" after it, which stays if the run ends
-  /// between flush() and commit(), so that a later one can go on; what no flush() tells of is removed. `from`: so many
-  /// bytes of that file, which must be there, are kept, and what follows them is dropped; if 0, there must be no such
-  /// file.
-  OutputFile(const std::string& path, std::uint64_t from);
+  /// One that may take several runs to write: to unfinished_path(), which stays if the run ends between flush() and
+  /// commit(), so that a later one can go on; what no flush() tells of is removed. What flush() and commit() tell of is
+  /// on the disk, too, and outlasts a power cut. `from`: of a run that begins nothing, and there must be no such file.
+  /// Of one that goes on so many bytes of what there is are kept, and what follows them is dropped, by the first
+  /// write(), flush() or close(): until then nothing is changed. If 0, there may be nothing.
+  OutputFile(const std::string& path, std::optional<std::uint64_t> from);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -49,15 +63,20 @@ class OutputFile {
   void commit();
   /// How many bytes have been written; they are in the file, whatever happens to this process.
   std::uint64_t flush();
+  /// Throws OutputError: what there is of a file that takes several runs to write is not what it should be.
+  [[noreturn]] void refuse_to_go_on(const std::string& why) const;
 
  private:
+  void drop();
+  void sync();
   [[noreturn]] void fail(int error, bool on_opening = false) const;
 
   std::string path_;
-  std::filesystem::path target_;     ///< path_, with symbolic links resolved
-  std::filesystem::path temporary_;  ///< empty where path_ is written directly
-  bool stays_ = false;               ///< the temporary file, if there is no commit()
-  bool goes_on_ = false;             ///< a later run may go on with it
+  std::filesystem::path target_;               ///< path_, with symbolic links resolved
+  std::filesystem::path temporary_;            ///< empty where path_ is written directly
+  bool stays_ = false;                         ///< the temporary file, if there is no commit()
+  bool goes_on_ = false;                       ///< a later run may go on with it
+  std::optional<std::uint64_t> drops_from_{};  ///< nothing has been changed: what is from here on is to be dropped
   std::FILE* file_ = nullptr;
   int slot_ = -1;  ///< of the names a signal removes
 };

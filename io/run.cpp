@@ -189,9 +189,9 @@ void run_to_end(World& world, const Scene& scene, const RunOptions& options, Eve
     }
     if (t == checkpoints.next()) {
       if constexpr (requires { world.save_parts(options.checkpoint_bodies); }) {
-        options.checkpoint(world.save_parts(options.checkpoint_bodies));
+        options.checkpoint(world.save_parts(options.checkpoint_bodies), t);
       } else {
-        options.checkpoint(kds::save(world));
+        options.checkpoint(kds::save(world), t);
       }
       checkpoints.pass();
     }

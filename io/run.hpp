@@ -38,11 +38,11 @@ struct RunOptions {
   kds::collision::StepListener* steps = nullptr;
   /// s of simulated time, > 0: whenever so much has gone by, the state of the run is given away, after the events up to
   /// then. Of a scene that is divided `checkpoint_bodies` is given the bodies, in each process its own, block by block;
-  /// afterwards `checkpoint` in all processes, and in process 0 with all the rest, as by
+  /// afterwards `checkpoint` the time, in all processes, and in process 0 with all the rest, as by
   /// BasicParallelWorld::save_parts(). 0: never.
   double checkpoint_every = 0;
   std::function<void(std::vector<char>)> checkpoint_bodies{};
-  std::function<void(const Snapshot&)> checkpoint{};
+  std::function<void(const Snapshot&, double time)> checkpoint{};
   /// If not null, the run goes on from this state, of a run of the same scene with the same options but `processes`,
   /// `steps`, `domains`, `threads` and those about checkpoints; the same in all processes. RunResult is about what
   /// follows. `resume_bodies`: if there were blocks, gives each process its share of them

@@ -1,5 +1,6 @@
 #include "io/scene.hpp"
 
+#include "io/checksum.hpp"
 #include "io/one_line.hpp"
 
 namespace kds::io {
@@ -21,6 +22,12 @@ std::string Scene::name_of(std::size_t number) const {
   auto table = share.tables.begin();
   while (number >= table->second) number -= table->second, ++table;
   return table->first + std::to_string(number);
+}
+
+std::uint64_t fingerprint(const Scene& scene) {
+  std::uint64_t all = first_chain;
+  for (const SceneSource& source : scene.sources) all = chained(all, source.checksum);
+  return all;
 }
 
 SceneError::SceneError(const std::string& file, const std::string& where, const std::string& what)

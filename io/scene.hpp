@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -80,6 +81,16 @@ struct Share {
   int degree = 1;  ///< of the others
 };
 
+/// A file that a scene is made of.
+struct SceneSource {
+  std::string where;  ///< what names it in the scene: `meshes.wedge.file`; empty of the scene's own text
+  std::string file;   ///< as written there
+  /// Of what was read: the bytes of the scene's own text, the vertices and triangles of a mesh, the numbers of a table.
+  /// Of a table read by several processes that of their rows, until complete().
+  std::uint64_t checksum = 0;
+  bool in_shares = false;  ///< a table
+};
+
 /// What a scene file says, checked.
 struct Scene {
   /// The earliest start of a first piece. A body whose first piece starts later enters then.
@@ -91,7 +102,7 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneBody> bodies;  ///< all, or those of a share
   Share share{};
-  std::vector<std::string> table_files;  ///< of tables of bodies, as written in the scene
+  std::vector<SceneSource> sources;  ///< its own text, then files of meshes, then tables
   /// What was mended in what the scene names, each as one line `FILE: WHERE: what`.
   std::vector<std::string> warnings;
 
@@ -103,6 +114,9 @@ struct Scene {
   /// The name of a body of the whole scene, by its number: its place among all.
   std::string name_of(std::size_t number) const;
 };
+
+/// The same for scenes of the same text, meshes and tables, and hardly ever for others. Of a share: after complete().
+std::uint64_t fingerprint(const Scene& scene);
 
 /// What is wrong with a scene, as one line `FILE: WHERE: what is wrong`.
 class SceneError : public std::runtime_error {

@@ -2,6 +2,7 @@
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "io/checksum.hpp"
 #include "io/number_text.hpp"
 #include "io/scene_file/body_checks.hpp"
 #include "io/scene_file/json_node.hpp"
@@ -195,12 +196,13 @@ std::vector<TableRows> begin_share(const std::vector<JsonNode>& tables, const st
   return rows;
 }
 
-Scene read_document(const JsonNode& root, const std::filesystem::path& folder, std::optional<double> until,
-                    const Reader& reader) {
+Scene read_document(const JsonNode& root, const SceneSource& text, const std::filesystem::path& folder,
+                    std::optional<double> until, const Reader& reader) {
   root.object({"scene", "end_time", "response", "restitution", "friction", "tangential_restitution", "rolling_friction",
                "domain", "meshes", "bodies", "tables"});
   if (!root["scene"].is(1)) root["scene"].fail("must be 1, the only format there is");
   Scene scene;
+  scene.sources.push_back(text);
   scene.end_time = root["end_time"].number();
   if (root.has("response")) {
     scene.response = root["response"].choice({"none", "elastic"}) == 1 ? Response::elastic : Response::none;
@@ -225,7 +227,6 @@ Scene read_document(const JsonNode& root, const std::filesystem::path& folder, s
   std::vector<ReadTable> tables;
   for (std::size_t i = 0; i < named.size(); ++i) {
     tables.push_back(read_table(named[i], folder, surface, rows[i], scene));
-    scene.table_files.push_back(tables.back().file);
   }
   check_names(tables, names);
   for (const SceneBody& body : scene.bodies) {  // made by pivots
@@ -270,7 +271,8 @@ Scene parse(std::string_view json_text, const std::filesystem::path& file, std::
             const Reader& reader) {
   try {
     const json document = parse_json(json_text);
-    Scene scene = read_document(JsonNode(document, ""), file.parent_path(), until, reader);
+    const SceneSource text{"", file.string(), checksum_of(json_text)};
+    Scene scene = read_document(JsonNode(document, ""), text, file.parent_path(), until, reader);
     for (std::string& warning : scene.warnings) warning.insert(0, file.string() + ": ");
     return scene;
   } catch (const JsonError& error) {
@@ -307,9 +309,20 @@ Scene read_share(const std::filesystem::path& file, std::optional<double> until,
 
 void complete(Scene& share, const std::filesystem::path& file, kds::collision::Team& team) {
   if (!share.is_share()) return;
+  // Each process has read files of its own machine.
+  std::uint64_t own = first_chain;
+  for (const SceneSource& source : share.sources) own = source.in_shares ? own : chained(own, source.checksum);
+  if (!team.all(team.of_first(own) == own)) {
+    throw SceneError(file.string(), "file", "is not the same, or its meshes are not, in all processes");
+  }
+  std::vector<std::uint64_t> sums;
+  for (const SceneSource& source : share.sources) sums.push_back(source.in_shares ? source.checksum : 0);
   std::array<double, 2> greatest{share.bodies.empty() ? -kds::never : -share.begin_time,
                                  static_cast<double>(share.degree())};
-  team.combine({}, greatest);
+  team.combine(sums, greatest);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (share.sources[i].in_shares) share.sources[i].checksum = sums[i];
+  }
   share.begin_time = -greatest[0] + 0.0;
   share.share.degree = static_cast<int>(greatest[1]);
   if (share.end_time >= share.begin_time) return;

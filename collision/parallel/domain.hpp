@@ -16,6 +16,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -95,6 +96,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<DomainEvent> take_events() { return std::move(events_); }
   std::size_t index() const { return index_; }
   WorldCounters work() const { return world_.counters(); }
+  std::string_view broad_phase() const { return world_.broad_phase(); }
 
   /// Tells `store` of the bodies of this domain that have changed. Domains may do the first at once, the second one by
   /// one.

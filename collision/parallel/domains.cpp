@@ -354,6 +354,11 @@ WorldCounters Domains<Motion>::work() const {
   return all;
 }
 
+template <class Motion>
+std::string_view Domains<Motion>::broad_phase() const {
+  return domains_.empty() ? std::string_view() : domains_.front()->broad_phase();
+}
+
 #define KDS_INSTANTIATE(motion) template class Domains<motion>;
 KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE

@@ -19,6 +19,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -97,6 +98,8 @@ class Domains {
 
   /// The work of the domains that this process runs, and has run.
   WorldCounters work() const;
+  /// That of the first domain of this process; empty if it has none.
+  std::string_view broad_phase() const;
 
  private:
   using Change = MotionChange<Motion>;

@@ -19,6 +19,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -62,6 +63,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     return world_;
   }
   const World& world() const { return world_; }
+  std::string_view broad_phase() const {
+    const std::string_view of_domain = domains_.broad_phase();
+    return of_domain.empty() ? world_.broad_phase() : of_domain;
+  }
   void add_shares(std::size_t count, const std::function<Description(std::size_t)>& body) {
     require_outside("ParallelWorld::add_shares");
     if (world_.size() > 0) throw std::logic_error("ParallelWorld::add_shares: there are bodies already");

@@ -82,7 +82,7 @@ MessageCounters BasicParallelWorld<Motion>::messages() const {
 
 template <class Motion>
 std::string_view BasicParallelWorld<Motion>::broad_phase() const {
-  return runner_->world().broad_phase();
+  return runner_->broad_phase();
 }
 
 template <class Motion>

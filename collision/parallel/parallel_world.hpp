@@ -125,7 +125,7 @@ class BasicParallelWorld final {
   WorldCounters work() const;
   /// What this process has sent to others.
   MessageCounters messages() const;
-  /// As of a World.
+  /// As of a World: that of the scene while it is one world, else of the first domain of this process.
   std::string_view broad_phase() const;
 
  private:

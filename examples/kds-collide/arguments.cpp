@@ -2,8 +2,8 @@
 
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "collision/parallel/parallel_options.hpp"
+#include "examples/kds-collide/file_names.hpp"
 #include "io/number_text.hpp"
-#include "io/output_file.hpp"
 #include "io/vtk.hpp"
 
 #include <algorithm>
@@ -59,60 +59,17 @@ CLI::Validator not_empty() {
   return {[](std::string& text) -> std::string { return text.empty() ? "names no file" : ""; }, ""};
 }
 
-/// The files that a run writes, by option; empty where it does not.
-std::vector<std::pair<const char*, std::string>> outputs(const Arguments& arguments) {
-  return {{"--events", arguments.events},
-          {"--stats", arguments.stats},
-          {"--view", arguments.view},
-          {"--gltf", arguments.gltf},
-          {"--vtk", arguments.vtk},
-          {"--vtk", arguments.vtk.empty() ? "" : frames_folder(arguments.vtk).string()},
-          {"--checkpoint", arguments.checkpoint}};
-}
-
-/// Whether to write to one is to change the other. A device or a pipe may be written to by several.
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  if (a.empty() || b.empty()) return false;
-  if (a == "-" || b == "-") return a == b;
-  std::error_code ignored;
-  if (std::filesystem::is_other(a, ignored)) return false;
-  if (std::filesystem::equivalent(a, b, ignored)) return true;
-  const auto plain = [&](const std::filesystem::path& path) {  // also of a file that is not there yet
-    return std::filesystem::weakly_canonical(std::filesystem::absolute(past_dangling_links(path), ignored), ignored);
-  };
-  return plain(a) == plain(b);
-}
-
-/// Whether a file is, or would be, one of the parts that are named after another.
-bool is_part_of(const std::filesystem::path& path, const std::string& file) {
-  const std::string number = path.extension().string();
-  const bool numbered = number.size() > 1 && number.find_first_not_of("0123456789", 1) == std::string::npos;
-  return numbered && same_file(path, file + number);
-}
-
 void check_parts(const Arguments& arguments) {
-  if (!arguments.merge.empty()) {
-    if (arguments.events.empty()) throw ArgumentError("--merge-events: needs --events, the file to write");
-    for (const std::string& file : {arguments.events, arguments.scene}) {
-      if (is_part_of(file, arguments.merge)) throw ArgumentError("--merge-events: " + file + " is one of the parts");
-    }
+  if (!arguments.merge.empty() && arguments.events.empty()) {
+    throw ArgumentError("--merge-events: needs --events, the file to write");
   }
   if (!arguments.events_apart) return;
   if (arguments.events.empty()) throw ArgumentError("--events-apart: needs --events");
   if (arguments.events == "-") throw ArgumentError("--events-apart: the events must be files");
-  for (const auto& [option, path] : outputs(arguments)) {
-    if (is_part_of(path, arguments.events)) throw ArgumentError(std::string(option) + ": is a part of the events");
-  }
-  if (is_part_of(arguments.scene, arguments.events)) throw ArgumentError("--events: the scene would be a part of them");
 }
 
 bool pictures(const Arguments& arguments) {
   return !arguments.view.empty() || !arguments.gltf.empty() || !arguments.vtk.empty();
-}
-
-/// Whether a file is, or would be, one of those of bodies that belong to a checkpoint.
-bool is_of_checkpoint(const std::filesystem::path& path, const std::string& checkpoint) {
-  return is_part_of(path, checkpoint + ".a") || is_part_of(path, checkpoint + ".b");
 }
 
 void check_checkpoints(const Arguments& arguments) {
@@ -130,27 +87,6 @@ void check_checkpoints(const Arguments& arguments) {
   }
   for (const std::string& file : {arguments.checkpoint, arguments.events}) {
     if (file == "-") throw ArgumentError("--checkpoint: the checkpoint and the events must be files");
-  }
-  for (const auto& [option, path] : outputs(arguments)) {
-    if (is_of_checkpoint(path, arguments.checkpoint)) {
-      throw ArgumentError(std::string(option) + ": is a part of the checkpoint");
-    }
-  }
-  if (is_of_checkpoint(arguments.scene, arguments.checkpoint)) {
-    throw ArgumentError("--checkpoint: the scene would be a part of it");
-  }
-}
-
-/// Two outputs in one file, or an output in place of the scene, would destroy what is wanted.
-void check_files_differ(const Arguments& arguments) {
-  std::vector<std::pair<const char*, std::string>> files{{"SCENE", arguments.scene}};
-  for (auto& output : outputs(arguments)) {
-    for (const auto& [name, path] : files) {
-      if (same_file(path, output.second)) {
-        throw ArgumentError(std::string(output.first) + ": is the same file as " + name);
-      }
-    }
-    files.push_back(std::move(output));
   }
 }
 
@@ -303,19 +239,40 @@ void check(const Arguments& arguments, const Scene& scene) {
   if (arguments.run.rate * (scene.end_time - scene.begin_time) > most_results) {
     throw ArgumentError("--rate: asks for more than 1e12 results");
   }
-  const std::filesystem::path folder = std::filesystem::path(arguments.scene).parent_path();
-  const auto check_input = [&](const std::string& file, const std::string& where) {
-    for (const auto& [option, path] : outputs(arguments)) {
-      if (same_file(folder / file, path)) {
-        throw ArgumentError(std::string(option) + ": is the same file as " + where + ".file of the scene");
-      }
-    }
+  check_files_differ(arguments, &scene);
+}
+
+std::vector<SavedOption> saved_options(const Arguments& arguments) {
+  const auto given = [](bool is_given) { return std::string(is_given ? "given" : "not given"); };
+  const auto number = [](auto value) {
+    std::string text;
+    append_number(text, value);
+    return text;
   };
-  for (const SceneMesh& mesh : scene.meshes) {
-    if (!mesh.file.empty()) check_input(mesh.file, "meshes." + mesh.name);
+  const RunOptions& run = arguments.run;
+  std::vector<SavedOption> options{{"--events", given(!arguments.events.empty())},
+                                   {"--events-apart", given(arguments.events_apart)},
+                                   {"--orientation-error", number(run.orientation_error)},
+                                   {"--shortest-flight", number(run.shortest_flight)},
+                                   {"--pairs", given(run.pairs)}};
+  if (!run.pairs) return options;
+  // Of bounding volumes events depend on how pairs are found.
+  options.push_back({"--broad-phase", run.broad_phase});
+  options.push_back({"--kdop", number(run.kdop)});
+  options.push_back({"--rate", number(run.rate)});
+  return options;
+}
+
+void check_resume(const Arguments& arguments, const Scene& scene, const Checkpoint& checkpoint) {
+  const std::vector<SavedOption> options = saved_options(arguments);
+  for (std::size_t i = 0; i < std::min(options.size(), checkpoint.options.size()); ++i) {
+    const auto& [name, value] = options[i];
+    if (options[i] == checkpoint.options[i]) continue;
+    throw ArgumentError(name + ": is " + value + ", and " + checkpoint.options[i].value + " in the checkpoint");
   }
-  for (std::size_t i = 0; i < scene.table_files.size(); ++i) {
-    check_input(scene.table_files[i], "tables[" + std::to_string(i) + "]");
+  if (scene.end_time < checkpoint.time) {
+    throw ArgumentError("--until: the run ends at " + number_text(scene.end_time) + ", and the checkpoint is of " +
+                        number_text(checkpoint.time));
   }
 }
 

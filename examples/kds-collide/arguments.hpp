@@ -2,6 +2,7 @@
 #pragma once
 
 #include "examples/kds-collide/generator.hpp"
+#include "io/checkpoint.hpp"
 #include "io/run.hpp"
 #include "io/scene.hpp"
 
@@ -10,6 +11,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace kds_collide {
 
@@ -47,5 +49,11 @@ void check(const Arguments& arguments);
 
 /// Throws ArgumentError for those that make none with this scene.
 void check(const Arguments& arguments, const kds::io::Scene& scene);
+
+/// Those of which a run that goes on must have the same.
+std::vector<kds::io::SavedOption> saved_options(const Arguments& arguments);
+
+/// Throws ArgumentError for those with which a run cannot go on from this checkpoint.
+void check_resume(const Arguments& arguments, const kds::io::Scene& scene, const kds::io::Checkpoint& checkpoint);
 
 }  // namespace kds_collide

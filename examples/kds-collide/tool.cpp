@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -82,7 +83,8 @@ void generate(const Arguments& arguments) {
 /// Makes one log of the events of all processes.
 void merge(const Arguments& arguments) {
   const Scene scene = read_scene(arguments.scene, arguments.until);
-  EventParts parts(arguments.merge, fingerprint(arguments.scene), scene.bodies.size());
+  check(arguments, scene);
+  EventParts parts(arguments.merge, fingerprint(scene), scene.bodies.size());
   OutputFile output(arguments.events);
   // Each has a step in memory: more than can run at once would take memory for nothing.
   const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
@@ -115,9 +117,9 @@ class Simulation {
   Simulation(Arguments arguments, kds::collision::Team& team)
       : arguments_(std::move(arguments)), team_(team), scene_(read()) {}
 
-  /// What else can go wrong outside the run goes wrong here: outputs are opened, three.js is read.
-  /// `run`: a number of this run.
-  void open(std::uint64_t run) {
+  /// What else can go wrong outside the run goes wrong here: what it goes on from is read, outputs are opened, three.js
+  /// is read. Nothing that is there is changed. `random`: a number, the same in all processes.
+  void open(std::uint64_t random) {
     complete(scene_, arguments_.scene, team_);
     const bool writes = team_.rank() == 0;
     const bool quiet = arguments_.quiet || !writes;
@@ -125,9 +127,10 @@ class Simulation {
       for (const std::string& warning : scene_.warnings) std::fprintf(stderr, "%s\n", one_line(warning).c_str());
     }
     check(arguments_, scene_);
-    if (!arguments_.checkpoint.empty()) prepare_checkpoints();
+    if (arguments_.resume) resume();
+    if (!arguments_.checkpoint.empty()) prepare_checkpoints(random);
     if (arguments_.events_apart) {
-      open_parts(run);
+      open_parts(random);
     } else if (writes && !arguments_.events.empty()) {
       if (arguments_.checkpoint.empty()) {
         events_.emplace(arguments_.events, scene_);
@@ -152,11 +155,14 @@ class Simulation {
   Simulation(const Simulation&) = delete;
   Simulation& operator=(const Simulation&) = delete;
 
+  /// After open(), if it has gone well in all processes.
+  void open_checkpoints() {
+    if (arguments_.checkpoint.empty()) return;
+    const std::optional<std::uint64_t> turn = arguments_.resume ? std::optional(checkpoint_.turn) : std::nullopt;
+    checkpoints_.emplace(arguments_.checkpoint, team_, turn);
+  }
+
   void run() {
-    if (!arguments_.checkpoint.empty()) {
-      const std::optional<std::uint64_t> turn = arguments_.resume ? std::optional(checkpoint_.turn) : std::nullopt;
-      checkpoints_.emplace(arguments_.checkpoint, team_, turn);
-    }
     result_ = kds::io::run(scene_, arguments_.run, sinks_);
     progress_.reset();
   }
@@ -195,36 +201,35 @@ class Simulation {
     return scene;
   }
 
-  void prepare_checkpoints() {
-    const std::uint64_t scene = fingerprint(arguments_.scene);
-    if (arguments_.resume) {
-      checkpoint_ = read_checkpoint(arguments_.checkpoint);
-      if (checkpoint_.scene != scene) throw ArgumentError("--resume: the checkpoint is of another scene");
-      if (checkpoint_.parts.empty() == arguments_.events_apart) {
-        throw ArgumentError("--resume: give --events-apart if, and only if, the run had it");
-      }
-      if (!arguments_.events_apart && (checkpoint_.events > 0) == arguments_.events.empty()) {
-        throw ArgumentError("--resume: give --events if, and only if, the run had it");
-      }
-      arguments_.run.resume = &checkpoint_.world;
-      if (!checkpoint_.bodies.empty()) {
-        bodies_.emplace(arguments_.checkpoint, checkpoint_, team_.rank(), team_.count()).check();
-        arguments_.run.resume_bodies = [this](std::vector<char>& block) { return bodies_->read(block); };
-      }
-    }
-    checkpoint_.scene = scene;
+  void resume() {
+    checkpoint_ = read_checkpoint(arguments_.checkpoint);
+    require_same_scene(scene_, arguments_.scene, checkpoint_);
+    check_resume(arguments_, scene_, checkpoint_);
+    arguments_.run.resume = &checkpoint_.world;
+    if (checkpoint_.bodies.empty()) return;
+    bodies_.emplace(arguments_.checkpoint, checkpoint_, team_.rank(), team_.count()).check();
+    arguments_.run.resume_bodies = [this](std::vector<char>& block) { return bodies_->read(block); };
+  }
+
+  void prepare_checkpoints(std::uint64_t random) {
+    if (!arguments_.resume) checkpoint_.run = random;
     arguments_.run.checkpoint_bodies = [this](const std::vector<char>& block) { checkpoints_->write_bodies(block); };
-    arguments_.run.checkpoint = [this](const kds::Snapshot& world) {
-      auto parts = parts_ ? parts_->places() : std::vector<PartPlace>();
-      checkpoints_->commit({.scene = checkpoint_.scene,
-                            .events = events_ ? events_->flush() : 0,
-                            .parts = std::move(parts),
+    arguments_.run.checkpoint = [this](const kds::Snapshot& world, double time) {
+      checkpoints_->commit({.run = checkpoint_.run,
+                            .scene = checksums_of(scene_),
+                            .options = saved_options(arguments_),
+                            .time = time,
+                            .events = events_ ? std::optional(events_->flush()) : std::nullopt,
+                            .parts = parts_ ? parts_->places() : std::vector<FilePlace>(),
                             .world = world});
     };
   }
 
-  void open_parts(std::uint64_t run) {
-    const PartOf of{.scene = fingerprint(arguments_.scene), .bodies = scene_.size(), .run = run};
+  void open_parts(std::uint64_t random) {
+    const PartOf of{.scene = fingerprint(scene_),
+                    .bodies = scene_.size(),
+                    .run = arguments_.resume ? checkpoint_.run : random,
+                    .section = random};
     if (arguments_.checkpoint.empty()) {
       parts_.emplace(arguments_.events, of, team_);
     } else {
@@ -236,7 +241,7 @@ class Simulation {
 
   Arguments arguments_;
   kds::collision::Team& team_;
-  Checkpoint checkpoint_;  ///< from which the run goes on, if it does
+  Checkpoint checkpoint_;  ///< from which the run goes on, if it does; else its run alone counts
   std::optional<CheckpointReader> bodies_;
   std::optional<CheckpointWriter> checkpoints_;
   double read_seconds_ = 0;
@@ -329,13 +334,18 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
                     true);
   }
 
-  const std::uint64_t run = team.of_first(std::uint64_t{std::random_device()()} << 32 | std::random_device()());
+  const std::uint64_t random = team.of_first(std::uint64_t{std::random_device()()} << 32 | std::random_device()());
   std::optional<Simulation> simulation;
-  Failure failure = first_of(team, attempt(name, arguments, [&] {
-                               check(arguments);
-                               simulation.emplace(arguments, team);
-                             }));
-  if (failure.code == done) failure = first_of(team, attempt(name, arguments, [&] { simulation->open(run); }));
+  Failure failure;
+  const auto begin = [&](const auto& call) {
+    if (failure.code == done) failure = first_of(team, attempt(name, arguments, call));
+  };
+  begin([&] {
+    check(arguments);
+    simulation.emplace(arguments, team);
+  });
+  begin([&] { simulation->open(random); });
+  begin([&] { simulation->open_checkpoints(); });
   if (failure.code != done) return end_with(failure, is_first);
   failure = attempt(name, arguments, [&] {
     simulation->run();
@@ -347,6 +357,9 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   if (failure.code != done && team.count() > 1) {
     failure.line = "process " + std::to_string(team.rank()) + ": " + failure.line;
     simulation.reset();  // removes temporary files
+    // What fails in all processes is said once: process 0 ends the others while they wait.
+    constexpr std::chrono::seconds longest_until_all_have_failed(2);
+    if (!is_first) std::this_thread::sleep_for(longest_until_all_have_failed);
     end_with(failure, true);
     together->end_all(failure.code);
   }

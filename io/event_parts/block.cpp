@@ -2,7 +2,10 @@
 
 #include "io/scene.hpp"
 
+#include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -15,6 +18,29 @@ constexpr std::uint64_t head_size = 2 * sizeof(std::uint64_t);
 constexpr std::uint64_t around = head_size + sizeof(std::uint64_t);
 
 }  // namespace
+
+bool has_format(const std::filesystem::path& path, const BlockFormat& format) {
+  std::string magic(format.magic.size(), '\0');
+  std::ifstream in(path, std::ios::binary);
+  return in.read(magic.data(), static_cast<std::streamsize>(magic.size())) && magic == format.magic;
+}
+
+std::vector<std::size_t> part_numbers(const std::string& file, const std::string& ending) {
+  const std::filesystem::path path(file);
+  const std::string begin = path.filename().string() + '.';
+  std::vector<std::size_t> numbers;
+  std::error_code ignored;
+  for (std::filesystem::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", ignored), end;
+       entry != end; entry.increment(ignored)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(begin) || !name.ends_with(ending) || name.size() < begin.size() + ending.size()) continue;
+    const std::string digits = name.substr(begin.size(), name.size() - begin.size() - ending.size());
+    std::size_t number = 0;
+    std::from_chars(digits.data(), digits.data() + digits.size(), number);
+    if (std::to_string(number) == digits && entry->is_regular_file(ignored)) numbers.push_back(number);
+  }
+  return numbers;
+}
 
 void write_block(OutputFile& file, std::uint64_t& chain, BlockKind kind, std::string_view content) {
   const std::uint64_t head[2] = {static_cast<std::uint64_t>(kind), content.size()};

@@ -22,42 +22,61 @@ void append_bytes(std::string& bytes, const T& value) {
   std::memcpy(bytes.data() + at, &value, sizeof(T));
 }
 
-/// As OutputFile names it.
-std::string unfinished(const std::string& path) { return past_dangling_links(path).string() + ".unfinished"; }
-
-/// Refuses a file that is longer than it was when the state was written, and has something else there.
-const std::string& checked(const std::string& path, const PartPlace& from) {
-  std::ifstream in(unfinished(path), std::ios::binary);
-  std::uint64_t chain = 0;
-  char letters[sizeof chain];
-  if (from.bytes < sizeof chain || !in.seekg(static_cast<std::streamoff>(from.bytes - sizeof chain))) return path;
-  if (!in.read(letters, sizeof letters)) return path;  // OutputFile says that it is too short
-  std::memcpy(&chain, letters, sizeof chain);
-  if (chain != from.chain) {
-    throw OutputError(unfinished(path) + ": file: cannot be gone on with: it is not what the run had written", true);
+/// Refuses a part of which the beginning is not what the run had written; `file` does so.
+void check_beginning(const std::string& path, const FilePlace& from, const OutputFile& file) {
+  BlockFile begun(begun_path(path), part_of_events);
+  for (std::string content; begun.place().bytes < from.bytes;) begun.next(content);
+  if (begun.place().bytes != from.bytes || begun.place().checksum != from.checksum) {
+    file.refuse_to_go_on("it is not what the run had written");
   }
-  return path;
+}
+
+/// Whether a file is a part that a run has written.
+bool is_of_run(const std::filesystem::path& path, std::uint64_t run) {
+  try {
+    BlockFile part(path, part_of_events);
+    std::string content;
+    SectionHead head;
+    if (part.next(content) != BlockKind::section || content.size() != sizeof head) return false;
+    std::memcpy(&head, content.data(), sizeof head);
+    return head.run == run;
+  } catch (const SceneError&) {
+    return false;
+  }
+}
+
+/// The same of a part that has not ended; one that has been made, and not been written yet, is no one's.
+bool is_left_by_run(const std::filesystem::path& path, std::uint64_t run) {
+  std::error_code ignored;
+  return std::filesystem::file_size(path, ignored) == 0 || is_of_run(path, run);
 }
 
 }  // namespace
 
 std::string part_path(const std::string& file, std::size_t rank) { return file + '.' + std::to_string(rank); }
 
-EventPart::EventPart(const std::string& path, const PartOf& of) : file_(path), chain_(first_chain) {
-  file_.write(part_of_events.magic);
-  begin(of);
+EventPart::EventPart(const std::string& path, const PartOf& of) : of_(of), file_(path), chain_(first_chain) {}
+
+EventPart::EventPart(const std::string& path, const PartOf& of, const std::optional<FilePlace>& from)
+    : of_(of),
+      file_(path, from ? std::optional(from->bytes) : std::nullopt),
+      chain_(from && from->bytes > 0 ? from->checksum : first_chain),
+      has_magic_(from && from->bytes > 0) {
+  if (has_magic_) check_beginning(path, *from, file_);
+  const std::filesystem::path left = unfinished_path(path);
+  if (from && !has_magic_ && !is_left_by_run(left, of.run)) {
+    throw OutputError(left.string() + ": file: is there already, of a run that has not ended", true);
+  }
 }
 
-EventPart::EventPart(const std::string& path, const PartOf& of, const PartPlace& from)
-    : file_(checked(path, from), from.bytes), chain_(from.bytes > 0 ? from.chain : first_chain) {
-  if (from.bytes == 0) file_.write(part_of_events.magic);
-  begin(of);
-}
-
-void EventPart::begin(const PartOf& of) {
-  if (of.rank >= of.processes) return;
+/// Nothing is written before there is something to write: a run may be refused when its parts are open.
+void EventPart::begin() {
+  if (std::exchange(begun_, true)) return;
+  if (!has_magic_) file_.write(part_of_events.magic);
+  if (of_.rank >= of_.processes) return;
   std::string content;
-  append_bytes(content, SectionHead{KDS_VERSION_NUMBER, of.scene, of.bodies, of.run, of.rank, of.processes});
+  append_bytes(content,
+               SectionHead{KDS_VERSION_NUMBER, of_.scene, of_.bodies, of_.run, of_.section, of_.rank, of_.processes});
   write(BlockKind::section, content);
 }
 
@@ -90,9 +109,13 @@ void EventPart::write_events() {
   records_.clear();
 }
 
-void EventPart::write(BlockKind kind, const std::string& content) { write_block(file_, chain_, kind, content); }
+void EventPart::write(BlockKind kind, const std::string& content) {
+  begin();
+  write_block(file_, chain_, kind, content);
+}
 
-PartPlace EventPart::flush() {
+FilePlace EventPart::flush() {
+  begin();
   write_events();
   const std::uint64_t bytes = file_.flush();
   return {bytes, chain_};
@@ -107,35 +130,33 @@ void EventPart::close() {
 void EventPart::commit() { file_.commit(); }
 
 EventsApart::EventsApart(const std::string& file, PartOf of, kds::collision::Team& team)
-    : team_(team), count_(team.count()) {
+    : team_(team), file_(file), run_(of.run), count_(team.count()) {
   of.rank = team.rank(), of.processes = team.count();
   parts_.emplace_back(part_path(file, of.rank), of);
 }
 
 EventsApart::EventsApart(const std::string& file, PartOf of, kds::collision::Team& team,
-                         const std::vector<PartPlace>& from)
-    : team_(team), count_(std::max(from.size(), team.count())) {
+                         const std::vector<FilePlace>& from)
+    : team_(team), file_(file), run_(of.run), count_(std::max(from.size(), team.count())) {
   of.processes = team.count();
   for (of.rank = team.rank(); of.rank < count_; of.rank += of.processes) {
-    const std::string path = part_path(file, of.rank);
-    const PartPlace place = of.rank < from.size() ? from[of.rank] : PartPlace{};
-    // What a run has left of a part that it had begun after its last checkpoint.
-    if (!from.empty() && place.bytes == 0) std::filesystem::remove(unfinished(path));
-    parts_.emplace_back(path, of, place);
+    std::optional<FilePlace> place;
+    if (!from.empty()) place = of.rank < from.size() ? from[of.rank] : FilePlace{};
+    parts_.emplace_back(part_path(file, of.rank), of, place);
   }
 }
 
-std::vector<PartPlace> EventsApart::places() {
-  std::vector<PartPlace> all(count_), mine;
+std::vector<FilePlace> EventsApart::places() {
+  std::vector<FilePlace> all(count_), mine;
   for (EventPart& part : parts_) mine.push_back(part.flush());
-  const auto note = [&](std::size_t process, const std::vector<PartPlace>& places) {
+  const auto note = [&](std::size_t process, const std::vector<FilePlace>& places) {
     for (std::size_t i = 0; i < places.size(); ++i) all[process + i * team_.count()] = places[i];
   };
   note(team_.rank(), mine);
   kds::collision::Letters letters;
   if (team_.rank() > 0) letters.to(0)(mine);
   team_.exchange(std::move(letters), [&](std::size_t process, auto& reader) {
-    std::vector<PartPlace> places;
+    std::vector<FilePlace> places;
     reader(places);
     note(process, places);
   });
@@ -148,6 +169,16 @@ void EventsApart::close() {
 
 void EventsApart::commit() {
   for (EventPart& part : parts_) part.commit();
+  const auto remove_others = [this](const std::string& ending, const auto& is_ours) {
+    for (const std::size_t number : part_numbers(file_, ending)) {
+      if (number < count_ || number % team_.count() != team_.rank()) continue;
+      const std::filesystem::path left = part_path(file_, number) + ending;
+      std::error_code ignored;
+      if (is_ours(left, run_)) std::filesystem::remove(left, ignored);
+    }
+  };
+  remove_others("", is_of_run);
+  remove_others(".unfinished", is_left_by_run);
 }
 
 }  // namespace kds::io

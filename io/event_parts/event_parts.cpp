@@ -140,12 +140,14 @@ void EventParts::begin_section(const std::string& content) {
   };
   const SectionHead first = head_of(0, content);
   if (first.processes == 0) part(0).refuse("is of no process");
-  processes_ = first.processes;
+  if (processes_ > 0 && first.run != run_) part(0).refuse("is of several runs");
+  processes_ = first.processes, run_ = first.run;
   for (std::size_t rank = 1; rank < processes_; ++rank) {
     std::string its;
     read_of(rank, BlockKind::section, its);
     const SectionHead head = head_of(rank, its);
-    if (head.run != first.run || head.processes != first.processes) part(rank).refuse("is of another run");
+    if (head.run != run_ || head.section != first.section || head.processes != processes_)
+      part(rank).refuse("is of another run");
   }
 }
 

@@ -1,6 +1,7 @@
 #include "io/scene_file/mesh_reader.hpp"
 
 #include "collision/shapes/heightfield.hpp"
+#include "io/checksum.hpp"
 #include "io/mesh_file.hpp"
 
 #include <cstddef>
@@ -14,12 +15,12 @@ namespace {
 
 using kds::collision::Mesh;
 
-std::shared_ptr<const Mesh> read_mesh(const JsonNode& node, const std::filesystem::path& folder,
-                                      std::vector<std::string>& warnings) {
+std::shared_ptr<const Mesh> read_mesh(const JsonNode& node, const std::filesystem::path& folder, Scene& scene) {
   const std::string name = node.string();
   try {
     MeshData data = read_mesh_file(folder / name);
-    for (const std::string& mended : mend(data)) warnings.push_back(node.path() + ": " + name + ": " + mended);
+    for (const std::string& mended : mend(data)) scene.warnings.push_back(node.path() + ": " + name + ": " + mended);
+    scene.sources.push_back({node.path(), name, chained(checksum_of(data.vertices), checksum_of(data.triangles))});
     return std::make_shared<const Mesh>(std::move(data.vertices), std::move(data.triangles));
   } catch (const MeshFileError& error) {
     node.fail(name + ": " + error.what());
@@ -62,7 +63,7 @@ void read_meshes(const JsonNode& node, const std::filesystem::path& folder, Scen
       continue;
     }
     const JsonNode file = entry["file"];
-    auto mesh = read_mesh(file, folder, scene.warnings);
+    auto mesh = read_mesh(file, folder, scene);
     scene.meshes.push_back({name, file.string(), std::move(mesh)});
   }
 }

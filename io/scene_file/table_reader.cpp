@@ -1,6 +1,7 @@
 #include "io/scene_file/table_reader.hpp"
 
 #include "io/body_table.hpp"
+#include "io/checksum.hpp"
 #include "io/scene_file/body_checks.hpp"
 #include "io/scene_file/shape_reader.hpp"
 
@@ -140,6 +141,19 @@ bool is_row(std::string_view digits, std::size_t rows) {
   return error == std::errc() && row < rows && std::to_string(row) == digits;
 }
 
+/// Of so many rows: the sum of what is made of each, so that those of all rows are the sum of those of their parts.
+std::uint64_t checksum_of_rows(const BodyTable& table, std::size_t first_row, std::size_t rows) {
+  std::uint64_t sum = 0;
+  for_each_column(table, [&](const char* name, const auto& column) {
+    const std::uint64_t of_column = chained(first_chain, name);
+    for (std::size_t row = 0; row < std::min(rows, column.size()); ++row) {
+      const auto* const bytes = reinterpret_cast<const char*>(&column[row]);
+      sum += chained(chained(of_column, first_row + row), {bytes, sizeof(column[row])});
+    }
+  });
+  return sum;
+}
+
 }  // namespace
 
 std::string ReadTable::member_path(std::size_t row, const std::string& member) const {
@@ -195,6 +209,8 @@ ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, 
         rows.number(table.rolling_friction, "rolling_friction", row, of_scene.rolling_friction, friction_problem);
   }
   scene.turning = scene.turning || !table.angular_velocity.empty();
+  scene.sources.push_back(
+      {node["file"].path(), read.file, checksum_of_rows(table, read.first_row, read.rows_read), true});
   return read;
 }
 

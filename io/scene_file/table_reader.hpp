@@ -35,8 +35,8 @@ struct ReadTable {
 };
 
 /// Reads rows of the table that `node`, an element of the scene's "tables", names, relative to a folder, and appends
-/// their bodies to the scene. They have the surface of the scene where the table does not say another. Throws
-/// JsonError.
+/// their bodies to the scene, and its file to scene.sources. They have the surface of the scene where the table does
+/// not say another. Throws JsonError.
 ReadTable read_table(const JsonNode& node, const std::filesystem::path& folder, const SurfaceNumbers& of_scene,
                      const TableRows& rows, Scene& scene);
 /// How many rows that table has. Throws JsonError.

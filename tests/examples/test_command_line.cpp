@@ -133,6 +133,7 @@ TEST_CASE("command line: scenes that are divided have the same events and the sa
       CHECK(one[count] == divided[count]);
     }
     CHECK(divided["domains"] > 1);
+    if (options == "--domains 2") CHECK(divided["broad_phase"] == "grid");
     CHECK(!one.contains("domains"));
   }
   const bool few_bodies = events("--domains 0") == expected;
@@ -163,17 +164,45 @@ TEST_CASE("command line: a run that has ended early goes on from its last checkp
   const auto rest = nlohmann::json::parse(read_file(folder / "rest.json"));
   CHECK(rest["sim_seconds"].get<double>() == Approx(0.6));
 
-  const Outcome ended = kds_collide_in(folder, in_parts + " --resume");
-  CHECK(ended.code == 2);
-  CHECK(ended.err == "parts.csv.unfinished: file: cannot be gone on with: No such file or directory\n");
-  const Outcome without = kds_collide_in(folder, kind + ".json --checkpoint run.state --checkpoint-every 1 --resume");
-  CHECK(without.code == 2);
-  CHECK(without.err == "kds-collide: --resume: give --events if, and only if, the run had it\n");
+  // One that was ended when the events had their place, and other outputs had not.
+  CHECK(kds_collide_in(folder, in_parts + " --resume --stats again.json").code == 0);
+  const bool same_again = read_file(folder / "parts.csv") == expected;
+  CHECK(same_again);
+  CHECK(std::filesystem::exists(folder / "again.json"));
+  CHECK_FALSE(std::filesystem::exists(folder / "parts.csv.unfinished"));
+
+  const auto refused = [&](const std::string& arguments, const std::string& line) {
+    const Outcome outcome = kds_collide_in(folder, arguments);
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err == line + "\n");
+    CHECK(read_file(folder / "parts.csv") == expected);
+  };
+  const std::string goes_on = kind + ".json --checkpoint run.state --checkpoint-every 1 --resume ";
+  refused(goes_on, "kds-collide: --events: is not given, and given in the checkpoint");
+  const std::string with_events = goes_on + "--events parts.csv ";
+  refused(with_events + "--events-apart", "kds-collide: --events-apart: is given, and not given in the checkpoint");
+  refused(with_events + "--pairs", "kds-collide: --pairs: is given, and not given in the checkpoint");
+  refused(with_events + "--shortest-flight 0.5", "kds-collide: --shortest-flight: is 0.5, and 0.001 in the checkpoint");
+  refused(with_events + "--orientation-error 0.01",
+          "kds-collide: --orientation-error: is 0.01, and 0.001 in the checkpoint");
+  refused(with_events + "--until 1", "kds-collide: --until: the run ends at 1, and the checkpoint is of 1.4");
   folder.write("head_on.json", head_on);
   const Outcome other =
       kds_collide_in(folder, "head_on.json --events e.csv --checkpoint run.state --checkpoint-every 1 --resume");
   CHECK(other.code == 2);
-  CHECK(other.err == "kds-collide: --resume: the checkpoint is of another scene\n");
+  CHECK(other.err == "head_on.json: file: is not what it was when the checkpoint was written\n");
+
+  // What is damaged is refused, and nothing else is changed.
+  std::filesystem::rename(folder / "parts.csv", folder / "parts.csv.unfinished");
+  for (std::size_t at = 0; at < expected.size() / 2; at += 1 + expected.size() / 20) {
+    std::string damaged = expected;
+    damaged[at] = static_cast<char>(damaged[at] ^ 1);
+    folder.write("parts.csv.unfinished", damaged);
+    const Outcome outcome = kds_collide_in(folder, in_parts + " --resume");
+    CHECK(outcome.code == 2);
+    CHECK(outcome.err == "parts.csv.unfinished: file: cannot be gone on with: it is not what the run had written\n");
+    CHECK(read_file(folder / "parts.csv.unfinished") == damaged);
+  }
 }
 
 TEST_CASE("command line: --pairs adds the events of bounding volumes") {

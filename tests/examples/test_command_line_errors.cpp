@@ -59,6 +59,18 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
        "kds-collide: --checkpoint: there are no pictures of a run in parts"},
       {"scene.json --checkpoint scene.json --checkpoint-every 1",
        "kds-collide: --checkpoint: is the same file as SCENE"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events c.a.0",
+       "kds-collide: --checkpoint: a part of it is the same file as --events"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events c.b --events-apart",
+       "kds-collide: --checkpoint: a part of it is the same file as a part of --events"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --stats ./c.b.17",
+       "kds-collide: --checkpoint: a part of it is the same file as --stats"},
+      {"scene.json --checkpoint e.unfinished --checkpoint-every 1 --events e",
+       "kds-collide: --events: is the same file as --checkpoint"},
+      {"scene.json --checkpoint c --checkpoint-every 1 --events e --events-apart --stats e.1.unfinished",
+       "kds-collide: --events: a part of it is the same file as --stats"},
+      {"scene.json --events e --events-apart --stats e.3",
+       "kds-collide: --events: a part of it is the same file as --stats"},
       {"scene.json --checkpoint c --checkpoint-every 1 --resume", "c: file: cannot be read: No such file or directory"},
       {"scene.json --checkpoint bad.json --checkpoint-every 1 --resume", "bad.json: checkpoint: snapshot: "},
       {"scene.json --kdop 14", "kds-collide: --kdop: more than 6 is for --broad-phase kinetic-sap alone"},
@@ -122,6 +134,29 @@ TEST_CASE("command line: outputs that are one file by way of a link that leads n
   const Outcome outcome = kds_collide_in(folder, "scene.json --quiet --events link --stats x");
   CHECK(outcome.code == 2);
   CHECK(outcome.err == "kds-collide: --stats: is the same file as --events\n");
+}
+
+TEST_CASE("command line: no part of an output takes the place of what the scene names, by way of a link or not") {
+  const TemporaryFolder folder;
+  REQUIRE(kds_collide_in(folder, "--generate spheres --bodies 3 --table --output scene.json").code == 0);
+  const std::string scene = read_file(folder / "scene.json"), table = read_file(folder / "scene.h5");
+  std::filesystem::remove(folder / "scene.h5");
+  const std::string name = GENERATE(as<std::string>(), "c.a.0", "c.b.12", "e.1", "e.0.unfinished");
+  const bool linked = GENERATE(false, true);
+  INFO(name << ", " << linked);
+  folder.write(name, table);
+  if (linked) {
+    std::filesystem::create_symlink(name, folder / "scene.h5");
+  } else {
+    folder.write("scene.json", std::string(scene).replace(scene.find("scene.h5"), 8, name));
+  }
+  const Outcome outcome = kds_collide_in(
+      folder, "scene.json --quiet --checkpoint c --checkpoint-every 1 --events e --events-apart --until 10");
+  CHECK(outcome.code == 2);
+  const std::string option = name[0] == 'c' ? "--checkpoint" : "--events";
+  CHECK(outcome.err == "kds-collide: " + option + ": a part of it is the same file as tables[0].file of the scene\n");
+  CHECK(read_file(folder / name) == table);
+  CHECK(folder.file_count() == (linked ? 3 : 2));
 }
 
 TEST_CASE("command line: no output takes the place of a mesh of the scene") {

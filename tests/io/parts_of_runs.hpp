@@ -79,6 +79,7 @@ struct ApartOptions {
   std::size_t processes = 2;
   std::size_t domains = 4;
   std::uint64_t run = 1;
+  std::uint64_t section = 1;
   double rate = 0;              ///< Hz: so often steps end
   double checkpoint_every = 0;  ///< 0: the run is in one part
   std::size_t ends_at = 0;      ///< the checkpoint after which, and more events, it is ended early; 0: it is not
@@ -89,7 +90,7 @@ inline constexpr std::uint64_t scene_number = 77;
 /// The state of a run in several parts.
 struct Progress {
   kds::Snapshot world{};
-  std::vector<PartPlace> parts{};
+  std::vector<FilePlace> parts{};
   std::vector<std::vector<char>> bodies{};
 };
 
@@ -107,7 +108,8 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
   std::vector<std::vector<char>> bodies;  // of the next checkpoint
   const auto work = [&](kds::collision::Processes& processes) {
     kds::collision::Team team(&processes);
-    const PartOf of{.scene = scene_number, .bodies = scene.bodies.size(), .run = options.run};
+    const PartOf of{
+        .scene = scene_number, .bodies = scene.bodies.size(), .run = options.run, .section = options.section};
     auto parts = progress ? EventsApart(file, of, team, before.parts) : EventsApart(file, of, team);
     EventSinks sinks;
     if (team.rank() == 0) sinks.add(parts.own());
@@ -128,7 +130,7 @@ inline RunResult run_apart(const Scene& scene, const std::string& file, const Ap
       bodies.push_back(std::move(block));
     };
     std::size_t checkpoints = 0;
-    run_options.checkpoint = [&](const kds::Snapshot& world) {
+    run_options.checkpoint = [&](const kds::Snapshot& world, double /*time*/) {
       if (options.ends_at > 0 && checkpoints++ == options.ends_at) throw Ended();
       auto places = parts.places();
       const std::scoped_lock lock(mutex);

@@ -1,3 +1,4 @@
+#include "io/body_table.hpp"
 #include "io/checkpoint.hpp"
 #include "io/event_csv.hpp"
 #include "io/run.hpp"
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -93,14 +95,14 @@ TEST_CASE("checkpoint: a run that goes on from one has the events of the run tha
   Lines lines(scene);
   std::vector<State> states;
   options.checkpoint_every = 0.4;
-  options.checkpoint = [&](const kds::Snapshot& world) { states.push_back({world, lines.text.size()}); };
+  options.checkpoint = [&](const kds::Snapshot& world, double) { states.push_back({world, lines.text.size()}); };
   run(scene, options, lines);
   CHECK(lines.text == through.text);
   REQUIRE(states.size() == 7);
   int seen_in_blocks = 0;
   for (const State& state : states) {
     RunOptions on = options;
-    on.checkpoint = [](const kds::Snapshot&) {};
+    on.checkpoint = [](const kds::Snapshot&, double) {};
     on.resume = &state.world;
     Lines rest(scene);
     const RunResult result = run(scene, on, rest);
@@ -113,7 +115,7 @@ TEST_CASE("checkpoint: a run that goes on from one has the events of the run tha
     std::vector<InBlocks> in_blocks;
     Lines divided(scene);
     on.checkpoint_bodies = [&](std::vector<char> block) { blocks.push_back(std::move(block)); };
-    on.checkpoint = [&](const kds::Snapshot& world) {
+    on.checkpoint = [&](const kds::Snapshot& world, double) {
       in_blocks.push_back({{world, divided.text.size()}, std::exchange(blocks, {})});
     };
     run(scene, on, divided);
@@ -140,10 +142,12 @@ TEST_CASE("checkpoint: of another scene, or other options, it is refused") {
   const Scene scene = falling(false);
   kds::Snapshot state;
   RunOptions options;
-  options.checkpoint_every = 2;
-  options.checkpoint = [&](const kds::Snapshot& world) { state = world; };
+  std::vector<double> times;
+  options.checkpoint_every = 1.25;
+  options.checkpoint = [&](const kds::Snapshot& world, double time) { state = world, times.push_back(time); };
   EventSinks none;
   run(scene, options, none);
+  CHECK(times == std::vector<double>{1.25, 2.5});
   options.resume = &state;
   Scene shorter = scene;
   shorter.bodies.pop_back();
@@ -162,12 +166,22 @@ TEST_CASE("checkpoint: a file has what was written, and one that is damaged is r
   const TemporaryFolder folder;
   const auto file = folder / "run.state";
   Number number;
-  const Checkpoint written{.scene = 12, .events = 345, .world = kds::save(number)};
+  const Checkpoint written{.run = 11,
+                           .scene = {12, 13},
+                           .options = {{"--pairs", "given"}, {"--rate", "5"}},
+                           .time = 1.5,
+                           .events = FilePlace{345, 678},
+                           .world = kds::save(number)};
   kds::collision::Team alone(nullptr);
   CheckpointWriter(file, alone).commit(written);
   const Checkpoint read = read_checkpoint(file);
-  CHECK(read.scene == 12);
-  CHECK(read.events == 345);
+  CHECK(read.run == 11);
+  CHECK(read.scene == written.scene);
+  CHECK(read.options == written.options);
+  CHECK(read.time == 1.5);
+  REQUIRE(read.events);
+  CHECK(read.events->bytes == 345);
+  CHECK(read.events->checksum == 678);
   CHECK(read.world == written.world);
 
   const std::string bytes = read_file(file);
@@ -223,7 +237,7 @@ void write_by(std::size_t processes, const std::filesystem::path& file, std::siz
     CheckpointWriter writer(file, team);
     for (std::size_t k = 0; k < times; ++k) {
       write_parts(writer, team.rank(), 1 + team.rank() % 3, what + std::to_string(k) + "-");
-      writer.commit({.scene = 7});
+      writer.commit({.run = 7});
     }
   });
 }
@@ -240,14 +254,14 @@ TEST_CASE("checkpoint: files of bodies are read by any number of processes, and 
     std::sort(read.begin(), read.end());
     CHECK(read == right);
   }
-  CHECK(read_checkpoint(file).scene == 7);
+  CHECK(read_checkpoint(file).run == 7);
   CHECK(files_in(folder) == Blocks{"run.state", "run.state.b.0", "run.state.b.1", "run.state.b.2", "run.state.b.3"});
   write_by(2, file, 1, "y");
   CHECK(files_in(folder) == Blocks{"run.state", "run.state.a.0", "run.state.a.1"});
   CHECK(read_blocks(file, 1) == Blocks{"y0-0.0", "y0-1.0", "y0-1.1"});
   // One with all in it has no files beside it.
   kds::collision::Team alone(nullptr);
-  CheckpointWriter(file, alone).commit({.scene = 8});
+  CheckpointWriter(file, alone).commit({.run = 8});
   CHECK(files_in(folder) == Blocks{"run.state"});
   CHECK(read_blocks(file, 2).empty());
 }
@@ -274,11 +288,17 @@ TEST_CASE("checkpoint: a process that ends while one is written leaves the one b
     folder.write("run.state" + part, read_file(other.string() + part));
   }
   CHECK(read_blocks(file, 1) == before);
-  // The next one, of fewer processes, leaves nothing of them.
+  // The next one, of fewer processes, leaves nothing of them, wherever there are gaps; but of others.
+  folder.write("run.state.a.7", read_file(other.string() + ".b.2"));
+  folder.write("run.state.a.8.unfinished", read_file(other.string() + ".b.2").substr(0, 20));
+  folder.write("run.state.b.9", "a table, say");
   write_by(2, file, 1, "z");
   CHECK(read_blocks(file, 1) == Blocks{"z0-0.0", "z0-1.0", "z0-1.1"});
   CHECK_FALSE(std::filesystem::exists(file.string() + ".b.2"));
   CHECK_FALSE(std::filesystem::exists(file.string() + ".a.0"));
+  CHECK_FALSE(std::filesystem::exists(file.string() + ".a.7"));
+  CHECK_FALSE(std::filesystem::exists(file.string() + ".a.8.unfinished"));
+  CHECK(std::filesystem::exists(file.string() + ".b.9"));
 }
 
 TEST_CASE(
@@ -314,10 +334,66 @@ TEST_CASE(
   refused("file: cannot be read: No such file or directory");
 }
 
-TEST_CASE("checkpoint: the fingerprint is that of the file") {
+TEST_CASE("checkpoint: a scene whose file, mesh or table is another one is refused, by its name, whoever reads it") {
   const TemporaryFolder folder;
-  CHECK(fingerprint(folder.write("a", "scene")) == fingerprint(folder.write("b", "scene")));
-  CHECK(fingerprint(folder / "a") != fingerprint(folder.write("c", "scent")));
+  const auto table = [](double last) {
+    BodyTable bodies;
+    for (int i = 0; i < 7; ++i) {
+      bodies.position.emplace_back(3 * i, 0, 0);
+      bodies.radius.push_back(i == 6 ? last : 1);
+      bodies.fixed.push_back(static_cast<std::int8_t>(i % 2));
+    }
+    return to_hdf5(bodies);
+  };
+  const std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::string text = R"({"scene": 1, "end_time": 1, "meshes": {"m": {"file": "m.obj"}}, "tables":
+    [{"file": "t.h5", "prefix": "b"}, {"file": "u.h5", "prefix": "c"}], "bodies": [{"name": "a", "shape":
+    {"mesh": "m"}, "motion": [{"start": 0, "position": [[0, 9, 0]]}]}]})";
+  const auto file = folder.write("scene.json", text);
+  folder.write("m.obj", mesh), folder.write("t.h5", table(1)), folder.write("u.h5", table(1));
+  const std::size_t readers = GENERATE(1u, 2u, 3u, 20u);
+  const auto scene_of = [&] {
+    Scene scene;
+    if (readers == 1) return read_scene(file);
+    std::mutex mutex;
+    kds::collision::tests::ThreadProcesses(readers).run([&](kds::collision::Processes& processes) {
+      kds::collision::Team team(&processes);
+      Scene share;
+      {  // The HDF5 library is for one thread.
+        const std::scoped_lock lock(mutex);
+        share = read_share(file, {}, team.rank(), team.count());
+      }
+      complete(share, file, team);
+      if (team.rank() + 1 == readers) scene = share;
+    });
+    return scene;
+  };
+  const Scene whole = read_scene(file);
+  const Checkpoint checkpoint{.scene = checksums_of(whole), .world = {}};
+  REQUIRE(checkpoint.scene.size() == 4);
+  const auto refusal = [&] {
+    const Scene scene = scene_of();
+    try {
+      require_same_scene(scene, file, checkpoint);
+    } catch (const SceneError& error) {
+      CHECK(fingerprint(scene) != fingerprint(whole));
+      return std::string(error.what());
+    }
+    CHECK(fingerprint(scene) == fingerprint(whole));
+    return std::string();
+  };
+  CHECK(refusal().empty());
+  const std::string changed = " is not what it was when the checkpoint was written";
+  folder.write("u.h5", table(1.5));
+  CHECK(refusal() == file.string() + ": tables[1].file: u.h5:" + changed);
+  folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 1e-9\nf 1 2 3\n");
+  CHECK(refusal() == file.string() + ": meshes.m.file: m.obj:" + changed);
+  folder.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 1\n");
+  CHECK(refusal() == file.string() + ": meshes.m.file: m.obj:" + changed);
+  folder.write("scene.json", text + " ");
+  CHECK(refusal() == file.string() + ": file:" + changed);
+  folder.write("scene.json", text), folder.write("m.obj", "# the same mesh\n" + mesh), folder.write("u.h5", table(1));
+  CHECK(refusal().empty());
 }
 
 }  // namespace test_checkpoint

@@ -1,6 +1,7 @@
 #include "io/event_csv.hpp"
 #include "io/number_text.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -83,6 +84,32 @@ TEST_CASE("event csv: a file appears when it is complete") {
   CHECK(text.starts_with("time,kind,a,b,px,py,pz,nx,ny,nz,feature_a,feature_b\n0,wall,plain name,+x,"));
   CHECK(std::count(text.begin(), text.end(), '\n') == 5001);
   CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("checksum: it does not depend on how the bytes come, and notices every change of a byte, and of the length") {
+  kds::tests::Random random(3);
+  std::string bytes;
+  for (int i = 0; i < 60; ++i) bytes += static_cast<char>(random.below(256));
+  const auto of = [](const std::string& text) {
+    Checksum sum;
+    sum.add(text);
+    return sum.value();
+  };
+  for (int trial = 0; trial < 300; ++trial) {
+    Checksum sum;
+    for (std::size_t at = 0; at < bytes.size();) {
+      const std::size_t count = random.below(1 + (trial % 2 == 0 ? 9 : bytes.size() - at));
+      sum.add(std::string_view(bytes).substr(at, count));
+      at += std::min(count, bytes.size() - at);
+      CHECK(sum.value() == of(bytes.substr(0, at)));
+    }
+  }
+  for (std::size_t i = 0; i < bytes.size(); ++i) {
+    std::string other = bytes;
+    other[i] = static_cast<char>(other[i] ^ 1 << random.below(8));
+    CHECK(of(other) != of(bytes));
+    CHECK(of(bytes.substr(0, i)) != of(bytes.substr(0, i) + '\0'));
+  }
 }
 
 }  // namespace test_event_csv

@@ -121,7 +121,7 @@ TEST_CASE("event parts: a run that is ended early goes on with other processes")
       run_apart(scene, file,
                 {.processes = processes,
                  .domains = 2 + random.below(5),
-                 .run = part,
+                 .section = part,
                  .checkpoint_every = scene.end_time / 13,
                  .ends_at = part < 4 ? 1 + random.below(3) : 0},
                 &progress);
@@ -155,22 +155,92 @@ TEST_CASE("event parts: what a run has not ended is refused, and gone on with on
     Progress copy = progress;
     try {
       run_apart(scene, file, options, &copy);
-    } catch (const OutputError& error) {
+    } catch (const std::runtime_error& error) {
       return std::string(error.what());
     }
     return std::string();
   };
-  const std::string bytes = read_file(unfinished);
-  std::string other = bytes;
-  other[progress.parts[1].bytes - 3] ^= 1;
-  folder.write("events.csv.1.unfinished", other);
-  CHECK(goes_on() == unfinished + ": file: cannot be gone on with: it is not what the run had written");
+  const std::string bytes = read_file(unfinished), of_first = read_file(first + ".unfinished");
+  for (std::uint64_t at = 0; at < progress.parts[1].bytes; at += 1 + progress.parts[1].bytes / 60) {
+    std::string other = bytes;
+    other[at] = static_cast<char>(other[at] ^ 1);
+    folder.write("events.csv.1.unfinished", other);
+    const std::string why = goes_on();
+    INFO(at << ": " << why);
+    REQUIRE(why.find(unfinished + ": ") == 0);
+    // Another one may still need what comes after the checkpoint.
+    REQUIRE(read_file(first + ".unfinished") == of_first);
+    REQUIRE(read_file(unfinished) == other);
+  }
+  Progress other_place = progress;
+  other_place.parts[1].checksum ^= 1;
+  folder.write("events.csv.1.unfinished", bytes);
+  CHECK_THROWS_WITH(run_apart(scene, file, options, &other_place),
+                    unfinished + ": file: cannot be gone on with: it is not what the run had written");
   folder.write("events.csv.1.unfinished", bytes.substr(0, progress.parts[1].bytes - 3));
   CHECK(goes_on().find(unfinished + ": file: cannot be gone on with: it has ") == 0);
   std::filesystem::remove(unfinished);
   CHECK(goes_on() == unfinished + ": file: cannot be gone on with: No such file or directory");
+  CHECK(read_file(first + ".unfinished") == of_first);
   folder.write("events.csv.1.unfinished", bytes);
   CHECK(goes_on().empty());
+  CHECK(merged_parts(scene, file) == events_of_one_world(scene));
+}
+
+TEST_CASE("event parts: a run that was killed while its parts took their places goes on, with other processes too") {
+  const Scene scene = random_scene(3);
+  const std::string right = events_of_one_world(scene);
+  for (std::size_t in_place = 0; in_place < 8; ++in_place) {
+    for (const std::size_t processes : {1u, 2u, 4u}) {
+      INFO(in_place << ", " << processes);
+      const TemporaryFolder folder;
+      const std::string file = (folder / "events.csv").string();
+      Progress progress;
+      run_apart(scene, file, {.processes = 3, .checkpoint_every = 0.5}, &progress);
+      for (std::size_t rank = 0; rank < 3; ++rank) {
+        const std::string part = part_path(file, rank);
+        if ((in_place >> rank & 1) == 0) std::filesystem::rename(part, part + ".unfinished");
+      }
+      run_apart(scene, file, {.processes = processes, .section = 2, .checkpoint_every = 0.5}, &progress);
+      REQUIRE(merged_parts(scene, file) == right);
+      CHECK(folder.file_count() == std::max<std::size_t>(3, processes));
+    }
+  }
+}
+
+TEST_CASE("event parts: what a run has left of more processes is removed, and nothing else") {
+  const Scene scene = random_scene(3);
+  const TemporaryFolder folder;
+  const std::string file = (folder / "events.csv").string(), other = (folder / "other.csv").string();
+  run_apart(scene, other, {.processes = 1, .run = 2});
+  Progress progress;
+  run_apart(scene, file, {.processes = 2, .checkpoint_every = 0.5, .ends_at = 1}, &progress);
+  Progress later = progress;
+  run_apart(scene, file, {.processes = 5, .section = 2, .checkpoint_every = 0.5, .ends_at = 1}, &later);
+  REQUIRE(std::filesystem::exists(file + ".4.unfinished"));
+  std::filesystem::remove(file + ".3.unfinished");
+  std::filesystem::rename(file + ".2.unfinished", file + ".2");
+  const std::string kept[] = {"events.csv.7", "events.csv.8.unfinished", "events.csv.04", "events.csv.9",
+                              "events.csv.x"};
+  for (const std::string& name : kept) {
+    folder.write(name, name == "events.csv.9" ? "time,kind\n" : read_file(other + ".0"));
+  }
+  folder.write("events.csv.6.unfinished", "");
+  SECTION("by fewer") {
+    run_apart(scene, file, {.processes = 1, .section = 3, .checkpoint_every = 0.5}, &progress);
+    CHECK(folder.file_count() == 2 + 1 + 5);
+  }
+  SECTION("those of others are not written over") {
+    std::filesystem::rename(file + ".4.unfinished", file + ".2.unfinished");
+    std::filesystem::rename(file + ".8.unfinished", file + ".3.unfinished");
+    Progress copy = progress;
+    CHECK_THROWS_WITH(run_apart(scene, file, {.processes = 5, .section = 3, .checkpoint_every = 0.5}, &copy),
+                      file + ".3.unfinished: file: is there already, of a run that has not ended");
+    std::filesystem::rename(file + ".3.unfinished", file + ".8.unfinished");
+    run_apart(scene, file, {.processes = 5, .section = 3, .checkpoint_every = 0.5}, &progress);
+    CHECK(folder.file_count() == 5 + 1 + 5);
+  }
+  for (const std::string& name : kept) CHECK(std::filesystem::exists(folder / name));
   CHECK(merged_parts(scene, file) == events_of_one_world(scene));
 }
 
@@ -291,7 +361,8 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
   const Scene scene = random_scene(5);
   const auto merged = [&](const std::vector<std::vector<DomainEvent>>& logs) {
     for (std::size_t rank = 0; rank < logs.size(); ++rank) {
-      EventPart part(part_path(file, rank), {scene_number, scene.bodies.size(), 1, rank, logs.size()});
+      EventPart part(part_path(file, rank),
+                     {.scene = scene_number, .bodies = scene.bodies.size(), .rank = rank, .processes = logs.size()});
       part.on_step({.domains = logs.size(), .first = rank, .logs = {logs[rank]}});
       part.close();
       part.commit();

@@ -5,6 +5,7 @@
 
 #include <unistd.h>
 
+#include <optional>
 #include <string>
 
 namespace test_output_file {
@@ -96,7 +97,7 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   const std::string path = (folder / "a.txt").string(), unfinished = path + ".unfinished";
   std::uint64_t length = 0;
   {
-    OutputFile file(path, 0);
+    OutputFile file(path, std::nullopt);
     file.write("one,");
     length = file.flush();
     file.write("what is dropped");
@@ -104,7 +105,8 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   CHECK(length == 4);
   CHECK(!std::filesystem::exists(path));
   CHECK(read_file(unfinished) == "one,what is dropped");
-  CHECK_THROWS_WITH(OutputFile(path, 0), unfinished + ": file: is there already, of a run that has not ended");
+  CHECK_THROWS_WITH(OutputFile(path, std::nullopt),
+                    unfinished + ": file: is there already, of a run that has not ended");
   CHECK_THROWS_WITH(OutputFile(path, 20), unfinished +
                                               ": file: cannot be gone on with: it has 19 bytes, and the run had "
                                               "written 20");
@@ -116,8 +118,25 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   }
   CHECK(read_file(path) == "one,two");
   CHECK(folder.file_count() == 1);
+  CHECK_THROWS_AS(OutputFile("/dev/null", std::nullopt), OutputError);
+  // One that was killed when this had its place, and other outputs had not.
+  {
+    const OutputFile file(path, 4);
+    CHECK(read_file(path) == "one,two");  // Nothing is changed before something is written.
+  }
+  CHECK(read_file(path) == "one,two");
+  OutputFile file(path, 4);
+  file.write("2");
+  file.commit();
+  CHECK(read_file(path) == "one,2");
+  CHECK(folder.file_count() == 1);
+  std::filesystem::remove(path);
   CHECK_THROWS_WITH(OutputFile(path, 4), unfinished + ": file: cannot be gone on with: No such file or directory");
-  CHECK_THROWS_AS(OutputFile("/dev/null", 0), OutputError);
+  folder.write("a.txt.unfinished", "left");
+  { const OutputFile none(path, 0); }
+  CHECK(read_file(unfinished) == "left");
+  OutputFile(path, 0).commit();
+  CHECK(read_file(path).empty());
 }
 
 TEST_CASE("output file: what a killed process of the same number has left is not in the way") {
@@ -135,10 +154,25 @@ TEST_CASE("output file: what a killed process of the same number has left is not
   CHECK(folder.file_count() == 2);
 }
 
+TEST_CASE("output file: one that takes several runs is written where a link leads, before and after") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "below");
+  std::filesystem::create_symlink("below/a.txt", folder / "link");
+  const std::string path = (folder / "link").string();
+  for (const char* text : {"one", "two"}) {
+    OutputFile file(path, std::nullopt);
+    CHECK(std::filesystem::exists(folder / "below/a.txt.unfinished"));
+    file.write(text);
+    file.commit();
+    CHECK(read_file(folder / "below/a.txt") == text);
+    CHECK(std::filesystem::is_symlink(path));
+  }
+}
+
 TEST_CASE("output file: of several runs, what no state tells of does not stay") {
   const TemporaryFolder folder;
   {
-    OutputFile file((folder / "a.txt").string(), 0);
+    OutputFile file((folder / "a.txt").string(), std::nullopt);
     file.write("nothing goes on from this");
   }
   CHECK(folder.file_count() == 0);

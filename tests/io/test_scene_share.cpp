@@ -168,7 +168,7 @@ TEST_CASE("share of a scene: runs of shares have the events of the scene, and go
         const std::scoped_lock lock(mutex);
         coming.push_back(std::move(block));
       };
-      options.checkpoint = [&](const kds::Snapshot& state) {
+      options.checkpoint = [&](const kds::Snapshot& state, double /*time*/) {
         const std::scoped_lock lock(mutex);
         if (team.rank() == 0) half = state, blocks = std::exchange(coming, {});
       };

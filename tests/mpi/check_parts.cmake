@@ -96,17 +96,61 @@ foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${TOOL};--domains;3
   same_files(one-balls.csv merged.csv "a run that went on with ${with}")
 endforeach()
 
-refuses(2 "kds-collide: --resume: give --events-apart if, and only if, the run had it"
+refuses(2 "kds-collide: --events-apart: is not given, and given in the checkpoint"
   "${TOOL}" balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 1.5 --resume)
 refuses(2 "lattice.csv.0: part of events: is of another scene"
   "${TOOL}" balls.json --merge-events lattice.csv --events wrong.csv)
 refuses(2 "kds-collide: --merge-events: needs --events, the file to write" "${TOOL}" balls.json --merge-events balls.csv)
-refuses(2 "kds-collide: --merge-events: balls.csv.0 is one of the parts"
+refuses(2 "kds-collide: --events: is the same file as a part of --merge-events"
   "${TOOL}" balls.json --merge-events balls.csv --events balls.csv.0)
 refuses(2 "kds-collide: --events-apart: needs --events" "${TOOL}" balls.json --events-apart)
 refuses(2 "kds-collide: --events-apart: the events must be files" "${TOOL}" balls.json --events-apart --events -)
-refuses(2 "kds-collide: --stats: is a part of the events"
+refuses(2 "kds-collide: --events: a part of it is the same file as --stats"
   "${TOOL}" balls.json --events-apart --events a.csv --stats a.csv.1)
+refuses(2 "kds-collide: --checkpoint: a part of it is the same file as a part of --events"
+  "${TOOL}" balls.json --events-apart --events c.a --checkpoint c --checkpoint-every 1)
+refuses(2 "kds-collide: --events: is the same file as tables[0].file of the scene"
+  "${TOOL}" balls.json --merge-events balls.csv --events balls.h5)
+
+# What fails in all processes is said once, and changes nothing: also where one process alone finds a part damaged.
+file(GLOB parts RELATIVE "${FOLDER}" "${FOLDER}/parts.csv.*")
+file(READ "${FOLDER}/parts.csv.1" before HEX)
+foreach(part IN LISTS parts)
+  file(RENAME "${FOLDER}/${part}" "${FOLDER}/${part}.unfinished")
+  file(SIZE "${FOLDER}/${part}.unfinished" size)
+  list(APPEND sizes ${size})
+endforeach()
+function(refuses_once expected)
+  execute_process(COMMAND ${MPIRUN} ${PROCESSES} "${MPI_TOOL}" ${options} --resume ${ARGN} WORKING_DIRECTORY "${FOLDER}"
+    RESULT_VARIABLE ended OUTPUT_QUIET ERROR_VARIABLE text)
+  string(REGEX MATCHALL "[^\n]*${expected}" lines "${text}")
+  list(LENGTH lines count)
+  if(NOT ended EQUAL 2 OR NOT count EQUAL 1)
+    message(FATAL_ERROR "resume with ${ARGN}: ended with ${ended}, and said:\n${text}\nnot once: ${expected}")
+  endif()
+  set(sizes_now "")
+  foreach(part IN LISTS parts)
+    file(SIZE "${FOLDER}/${part}.unfinished" size)
+    list(APPEND sizes_now ${size})
+  endforeach()
+  if(NOT sizes_now STREQUAL sizes)
+    message(FATAL_ERROR "resume with ${ARGN}, which was refused, has changed parts: ${sizes_now}, not ${sizes}")
+  endif()
+endfunction()
+refuses_once("kds-collide-mpi: --shortest-flight: is 0.1, and 0.001 in the checkpoint" --shortest-flight 0.1)
+file(RENAME "${FOLDER}/parts.csv.2.unfinished" "${FOLDER}/kept")
+file(COPY_FILE "${FOLDER}/parts.csv.1.unfinished" "${FOLDER}/parts.csv.2.unfinished")
+file(SIZE "${FOLDER}/kept" size_kept)
+file(SIZE "${FOLDER}/parts.csv.2.unfinished" size_copy)
+list(TRANSFORM sizes REPLACE "^${size_kept}$" "${size_copy}")
+refuses_once("parts.csv.2.unfinished: ")
+file(RENAME "${FOLDER}/kept" "${FOLDER}/parts.csv.2.unfinished")
+# Killed when some parts had taken their places.
+file(RENAME "${FOLDER}/parts.csv.0.unfinished" "${FOLDER}/parts.csv.0")
+run(${MPIRUN} 2 "${MPI_TOOL}" ${options} --resume)
+run("${TOOL}" balls.json --merge-events parts.csv --events merged.csv)
+same_files(one-balls.csv merged.csv "a run that was killed while its parts took their places")
+
 if(EXISTS "${FOLDER}/wrong.csv")
   message(FATAL_ERROR "parts of another scene have made ${FOLDER}/wrong.csv")
 endif()
