@@ -41,7 +41,7 @@ Vector3d angular_velocity(const PrincipalInertia& inertia, const RotationState& 
 }
 
 Vector3d angular_momentum(const PrincipalInertia& inertia, const Quaterniond& orientation, const Vector3d& velocity) {
-  return turned(orientation, inertia.moments.cwiseProduct(turned(orientation.conjugate(), velocity)));
+  return turned(orientation, turned(orientation.conjugate(), velocity).cwiseQuotient(inverse_moments(inertia)));
 }
 
 Matrix3d inverse_inertia(const PrincipalInertia& inertia, const Quaterniond& orientation) {

@@ -147,8 +147,10 @@ template <class Motion>
 inline KineticBox<Motion::degree> Volumes<Motion>::rigid_box(BodySlot slot) const {
   const detail::Body<Motion>& b = bodies_[slot];
   if constexpr (turns<Motion>) {
-    // Each piece of a body that precesses has another axis, so its volume is the bounding ball.
-    if (b.shape && b.volume == BoundingVolume::shape && !b.tumbles) {
+    // Each piece of a body that precesses has another axis, so its volume is the bounding ball. And pairs are reported
+    // of the balls around hulls and meshes.
+    if (b.shape && b.volume == BoundingVolume::shape && !b.tumbles &&
+        !(options_.report_pairs && takes_corners(b.shape->shape))) {
       const Eigen::Vector3d half_extents = turning_half_extents(*b.shape, bodies_.motion(slot));
       return box_around<Motion::degree>(bodies_.path(slot), -half_extents, half_extents);
     }

@@ -47,6 +47,9 @@ bool take_corners(const PlacedShape& shape, const Take& take) {
                      [&](const PlacedShape& part) { return take_corners(part, take); });
 }
 
+/// Whether the volume of such a body is the body of revolution of points around a hull or a mesh.
+inline bool takes_corners(const Shape& shape) { return std::holds_alternative<ConvexHull>(shape) || has_mesh(shape); }
+
 /// The half extents of a box along the axes of the world that holds a body however far it turns, rounded outward.
 ///
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
