@@ -51,8 +51,6 @@ struct std::tuple_element<I, kds::certificates::PointCoefficients<Degree>> {
 
 namespace kds::certificates {
 
-namespace detail {}  // namespace detail
-
 /// x(t) = c[0] + c[1] (t - start) + c[2] (t - start)^2: position, velocity, *half* the acceleration.
 template <int Degree>
 struct PointMotion {
