@@ -332,7 +332,7 @@ void Engine<Motion>::take_out(BodySlot slot) {
   unbounded_.remove(slot);
   volumes_.remove(slot);
   pairs_.remove(slot);
-  if (!reports_.empty()) reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);
+  reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);
   bodies_.remove(slot);
 }
 

@@ -53,12 +53,8 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Slot slot = overlapping != none ? overlapping : add(a, b);
   Pair& pair = pairs_[slot];
   pair.listed = true;
-  const auto has_jumped = [this](BodySlot body) {
-    return std::find(jumped_.begin(), jumped_.end(), body) != jumped_.end();
-  };
-  const bool jumps = begin_ == Begin::jumping || (t == jumped_at_ && (has_jumped(a) || has_jumped(b)));
-  const bool newly_allowed = t == filtered_at_ && !could_always_collide(a, b);
-  const bool fresh = begin_ == Begin::entering || newly_allowed || (jumps && mode(a, b) == ContactMode::resolved);
+  const bool jumps = begin_ == Begin::jumping || edits_.has_jumped(a, t) || edits_.has_jumped(b, t);
+  const bool fresh = begin_ == Begin::entering || newly_allowed(a, b) || (jumps && mode(a, b) == ContactMode::resolved);
   pair.fresh = pair.fresh || fresh;
   ++counters_.pairs_begun;
   mark_dirty(slot);
@@ -215,32 +211,19 @@ template <class Motion>
 void Pairs<Motion>::remove(BodySlot id) {
   while (!links(id).empty()) end(links(id).back().slot);
   if (id < of_.size()) links_.free(of_[id]);
-  // The next body of this slot has done nothing of what this one did.
-  if (jumped_at_ == clock_.now) std::erase(jumped_, id);
-  if (filtered_at_ != clock_.now) return;
-  std::erase_if(filtered_, [&](const Filtered& one) { return one.first == id; });
-  std::erase_if(unignored_, [&](const Ignored& one) { return one.first == id || one.second == id; });
+  edits_.forget(id);
 }
 
 template <class Motion>
 void Pairs<Motion>::filter_changed(BodySlot id, const CollisionFilter& before) {
-  begin_filtering();
-  filtered_.emplace_back(id, before);
+  edits_.add_filter(id, before, clock_.now);
   end_filtered(id);
 }
 
 template <class Motion>
 void Pairs<Motion>::ignoring_changed(BodySlot a, BodySlot b) {
-  begin_filtering();
-  unignored_.push_back(IgnoredPairs::pair(a, b));
+  edits_.add_ignored(a, b, clock_.now);
   end_filtered(a);
-}
-
-/// What was filtered at an earlier instant does not matter any more.
-template <class Motion>
-void Pairs<Motion>::begin_filtering() {
-  if (filtered_at_ != clock_.now) filtered_.clear(), unignored_.clear();
-  filtered_at_ = clock_.now;
 }
 
 template <class Motion>
@@ -250,26 +233,6 @@ void Pairs<Motion>::end_filtered(BodySlot id) {
     if (!bodies_.may_collide(id, link.other)) over.push_back(link.slot);
   }
   for (const Slot slot : over) end(slot);
-}
-
-/// Whether all the filters that the two have had at filtered_at_ let them collide, and they were never ignored.
-template <class Motion>
-bool Pairs<Motion>::could_always_collide(BodySlot a, BodySlot b) const {
-  const auto filters = [this](BodySlot id) {
-    std::vector<CollisionFilter> had{bodies_.filter(id)};
-    for (const auto& [body, filter] : filtered_) {
-      if (body == id) had.push_back(filter);
-    }
-    return had;
-  };
-  const auto unignored = std::find(unignored_.begin(), unignored_.end(), IgnoredPairs::pair(a, b));
-  if (unignored != unignored_.end()) return false;
-  const auto of_b = filters(b);
-  const auto meets_all = [&](const CollisionFilter& of_a) {
-    return std::all_of(of_b.begin(), of_b.end(), [&](const CollisionFilter& filter) { return of_a.meets(filter); });
-  };
-  const auto of_a = filters(a);
-  return std::all_of(of_a.begin(), of_a.end(), meets_all);
 }
 
 template <class Motion>

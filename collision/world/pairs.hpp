@@ -8,6 +8,7 @@
 #include "collision/profile.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
+#include "collision/world/instant_edits.hpp"
 #include "collision/world/list_arena.hpp"
 #include "collision/world/reports.hpp"
 #include "collision/world/resting_contacts.hpp"
@@ -173,10 +174,6 @@ class Pairs final : public PairListener {
   /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
-  /// What could not collide before: a body, and the filter that it had; and pairs that were ignored.
-  using Filtered = std::pair<BodySlot, CollisionFilter>;
-  using Ignored = IgnoredPairs::Pair;
-
   /// All of it, as plain data, in the order of (a, b).
   struct Image {
     struct One {
@@ -185,9 +182,7 @@ class Pairs final : public PairListener {
       double boxes = never;
     };
     std::vector<One> pairs;
-    std::vector<BodySlot> jumped;    ///< bodies that have jumped at this instant, ascending
-    std::vector<Filtered> filtered;  ///< and that have had other filters at this instant
-    std::vector<Ignored> ignored;    ///< and that have been ignored, the lower slot first
+    InstantEdits::Image edits;
 
     template <class Archive>
     void archive(Archive& archive);
@@ -216,8 +211,9 @@ class Pairs final : public PairListener {
   Slot find(BodySlot a, BodySlot b) const;
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);
-  bool could_always_collide(BodySlot a, BodySlot b) const;
-  void begin_filtering();
+  bool newly_allowed(BodySlot a, BodySlot b) const {
+    return edits_.has_let_collide(a, bodies_.filter(a), b, bodies_.filter(b), clock_.now);
+  }
   void end_filtered(BodySlot id);
   void unlist(Slot slot);
   void end(Slot slot);
@@ -261,13 +257,7 @@ class Pairs final : public PairListener {
   bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;
   Begin begin_ = Begin::moving;
-  /// Bodies that have jumped at jumped_at_: a pair that the broad phase finds later at that instant begins by the jump.
-  std::vector<BodySlot> jumped_;
-  double jumped_at_ = -never;
-  /// The same of bodies that have had other filters at filtered_at_, and those filters.
-  std::vector<Filtered> filtered_;
-  std::vector<Ignored> unignored_;  ///< and pairs that were ignored
-  double filtered_at_ = -never;
+  InstantEdits edits_;
 };
 
 // Functions for a change of motion or a contact are in the header: each is a few instructions for a pair, in the
@@ -292,12 +282,9 @@ template <class Motion>
 inline void Pairs<Motion>::motion_changed(BodySlot id, bool jumped) {
   for (const Link& link : links(id)) mark_dirty(link.slot);
   if (!jumped) return;
-  if (jumped_at_ != clock_.now) jumped_.clear();
-  jumped_at_ = clock_.now;
-  jumped_.push_back(id);
+  edits_.add_jump(id, clock_.now);
   for (const Link& link : links(id)) {
-    const bool newly_allowed = filtered_at_ == clock_.now && !could_always_collide(id, link.other);
-    if (newly_allowed || mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
+    if (newly_allowed(id, link.other) || mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
   }
 }
 

@@ -20,12 +20,7 @@ typename Pairs<Motion>::Image Pairs<Motion>::image() const {
   }
   std::sort(image.pairs.begin(), image.pairs.end(),
             [](const auto& x, const auto& y) { return std::pair(x.pair.a, x.pair.b) < std::pair(y.pair.a, y.pair.b); });
-  if (jumped_at_ == clock_.now) {
-    image.jumped = jumped_;
-    std::sort(image.jumped.begin(), image.jumped.end());
-    image.jumped.erase(std::unique(image.jumped.begin(), image.jumped.end()), image.jumped.end());
-  }
-  if (filtered_at_ == clock_.now) image.filtered = filtered_, image.ignored = unignored_;
+  image.edits = edits_.image(clock_.now);
   return image;
 }
 
@@ -35,11 +30,7 @@ void Pairs<Motion>::become(const Image& image) {
   of_.assign(bodies_.slots(), {});
   unlisted_ = 0;
   begin_ = Begin::moving;
-  jumped_ = image.jumped;
-  jumped_at_ = jumped_.empty() ? -never : clock_.now;
-  filtered_ = image.filtered;
-  unignored_ = image.ignored;
-  filtered_at_ = filtered_.empty() && unignored_.empty() ? -never : clock_.now;
+  edits_.become(image.edits, clock_.now);
   contacts_.resize(0), boxes_.resize(0);
   contacts_.resize(image.pairs.size());
   if (follows_boxes_) boxes_.resize(image.pairs.size());
@@ -69,12 +60,12 @@ void Pairs<Motion>::Image::archive(Archive& archive) {
     archive(p.a, p.b, p.listed, p.dirty, p.fresh, p.overlapping, p.boxes_overlap, p.estimated, p.passes_at, one.contact,
             one.boxes);
   });
-  archive(jumped);
-  archive.each(filtered, [&](Filtered& one) {
+  archive(edits.jumped);
+  archive.each(edits.filtered, [&](InstantEdits::Filtered& one) {
     CollisionFilter& filter = one.second;
     archive(one.first, filter.category, filter.collides_with, filter.group);
   });
-  archive.each(ignored, [&](Ignored& one) { archive(one.first, one.second); });
+  archive.each(edits.ignored, [&](InstantEdits::Ignored& one) { archive(one.first, one.second); });
 }
 
 template <class Motion>

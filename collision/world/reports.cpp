@@ -31,27 +31,49 @@ bool Reports::take_back(Kind kind, BodyId a, BodyId b, int wall) {
   const auto it = reports_.find({kind, a, b, {}, wall, 0, 0});
   if (it == reports_.end()) return false;
   reports_.erase(it);
+  drop_first();
   return true;
 }
 
 void Reports::forget(BodyId removed, std::uint64_t user_data) {
-  std::vector<Report> kept;
-  for (Report report : std::exchange(reports_, {})) {
-    const bool is_a = report.a == removed, is_b = report.b == removed;
-    const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved || report.kind == Kind::piece ||
-                            report.kind == Kind::rests;
-    if (of_present && (is_a || is_b)) continue;
-    if (is_a) report.user_data_a = user_data;
-    if (is_b) report.user_data_b = user_data;
-    kept.push_back(report);
+  if (reports_.empty()) return;
+  removed_.emplace(removed, user_data);
+  drop_first();
+}
+
+bool Reports::is_dropped(const Report& report) const {
+  const bool of_present = report.kind == Kind::overlap || report.kind == Kind::moved || report.kind == Kind::piece ||
+                          report.kind == Kind::rests;
+  return of_present && (removed_.contains(report.a) || removed_.contains(report.b));
+}
+
+void Reports::drop_first() {
+  if (!removed_.empty()) {
+    while (!reports_.empty() && is_dropped(*reports_.begin())) reports_.erase(reports_.begin());
   }
-  become(kept);
+  if (reports_.empty()) removed_.clear();
+}
+
+Reports::Report Reports::with_user_data(Report report) const {
+  if (removed_.empty()) return report;
+  if (const auto a = removed_.find(report.a); a != removed_.end()) report.user_data_a = a->second;
+  if (const auto b = removed_.find(report.b); b != removed_.end()) report.user_data_b = b->second;
+  return report;
 }
 
 Reports::Report Reports::take_first() {
-  const Report first = *reports_.begin();
+  const Report first = with_user_data(*reports_.begin());
   reports_.erase(reports_.begin());
+  drop_first();
   return first;
+}
+
+std::vector<Reports::Report> Reports::image() const {
+  std::vector<Report> image;
+  for (const Report& report : reports_) {
+    if (!is_dropped(report)) image.push_back(with_user_data(report));
+  }
+  return image;
 }
 
 }  // namespace kds::collision

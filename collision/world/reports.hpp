@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/contact.hpp"
 
 #include <cstdint>
+#include <map>
 #include <set>
 #include <span>
 #include <vector>
@@ -69,11 +70,22 @@ class Reports {
   /// The next to be told. Precondition: not empty.
   Report take_first();
 
-  std::vector<Report> image() const { return {reports_.begin(), reports_.end()}; }
-  void become(std::span<const Report> reports) { reports_ = {reports.begin(), reports.end()}; }
+  std::vector<Report> image() const;
+  void become(std::span<const Report> reports) {
+    reports_ = {reports.begin(), reports.end()};
+    removed_.clear();
+  }
 
  private:
+  bool is_dropped(const Report& report) const;
+  Report with_user_data(Report report) const;
+  void drop_first();
+
+  /// The first is none that is dropped.
   std::multiset<Report> reports_;
+  /// Bodies that have been removed while there were reports, with their user data. To look through the reports at each
+  /// removal would take time quadratic in the bodies that are removed at one instant.
+  std::map<BodyId, std::uint64_t> removed_;
 };
 
 }  // namespace kds::collision

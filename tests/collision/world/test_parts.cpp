@@ -124,6 +124,29 @@ TEST_CASE("Reports: what is told of a body that is gone, and of the next in its 
   CHECK(reports.empty());
 }
 
+TEST_CASE("Reports: what is dropped with a removed body is neither told nor in a snapshot, wherever it stands") {
+  Reports reports;
+  reports.add(Reports::Kind::overlap, 1, 2, {});
+  reports.add(Reports::Kind::separation, 1, 3, {});
+  reports.add(Reports::Kind::overlap, 0, 3, {});
+  reports.add(Reports::Kind::moved, 2, 2, {});
+  reports.forget(2, 5);
+  REQUIRE(reports.image().size() == 2);
+  reports.forget(3, 6);
+  REQUIRE(reports.image().size() == 1);
+  CHECK(reports.image()[0].user_data_b == 6);
+  Reports copy;
+  copy.become(reports.image());
+  CHECK(copy.take_first().user_data_b == 6);
+  CHECK(copy.empty());
+  CHECK(reports.take_back(Reports::Kind::separation, 1, 3));
+  CHECK(reports.empty());  // what was left is of removed bodies
+  CHECK(reports.image().empty());
+  reports.add(Reports::Kind::overlap, 1, 4, {});
+  CHECK(reports.take_first().kind == Reports::Kind::overlap);
+  CHECK(reports.empty());
+}
+
 TEST_CASE("Bodies: one that is removed does not enter any more") {
   Parts<1> parts;
   const BodySlot id = parts.bodies.add(ball<1>(1, {0, 0, 0}), nullptr, motion<1>({0, 0, 0}));
