@@ -46,7 +46,8 @@ int main() {
   double least = never;
   std::array<Id, 2> nearest{};
   for (double from = now, to; from < 10; from = to) {
-    const auto [a, b] = *closest.rule().pair();
+    const auto pair = *closest.rule().pair();
+    const Id a = pair[0], b = pair[1];
     to = std::min(simulator.next_time(), 10.0);
     const auto difference = [&](int d) { return aircraft[a].axis(d).position - aircraft[b].axis(d).position; };
     const auto x = difference(0), y = difference(1);  // all start at 0

@@ -128,7 +128,7 @@ TEST_CASE("Bodies that are removed, moved and asked about as they bounce off wal
       }
       CHECK(expected.asked > 100);
       CHECK(expected.asked_itself == expected.asked);
-      CHECK(std::count_if(expected.told.begin(), expected.told.end(), [](const Told& t) { return t.kind == 6; }) > 20);
+      CHECK(std::count_if(expected.told.begin(), expected.told.end(), [](const Told& t) { return t.kind == 6; }) > 10);
     }
   }
 }

@@ -210,10 +210,10 @@ TEST_CASE("Clusters: bodies that exactly fill a box stay where they are", "[dege
   options.walls = Walls{Vector3d::Zero(), Vector3d(3, 1000, 3), .8};
   World<2> world(options);
   for (int i = 0; i < 9; ++i) {
-    world.add_body(bouncy(body<2>(Sphere{.5}, motion<2>({.5 + i / 3, .5, .5 + i % 3}, {}, {0, -gravity / 2, 0})), .8,
-                          i % 2 == 0 ? 1e-3 : 1.0));
+    world.add_body(bouncy(body<2>(Sphere{.5}, motion<2>({.5 + i / 3, .5, .5 + i % 3}, {0, 0, 0}, {0, -gravity / 2, 0})),
+                          .8, i % 2 == 0 ? 1e-3 : 1.0));
   }
-  world.add_body(bouncy(body<2>(Sphere{.5}, motion<2>({1, 3, 1}, {}, {0, -gravity / 2, 0})), .8, 30));
+  world.add_body(bouncy(body<2>(Sphere{.5}, motion<2>({1, 3, 1}, {0, 0, 0}, {0, -gravity / 2, 0})), .8, 30));
   const double begun_with = energy(world);
   std::size_t steps = 0;
   while (++steps < most_steps && world.step(40)) CHECK(deepest(world) <= deepest_overlap);

@@ -111,7 +111,8 @@ TEST_CASE("Resting: a body goes that was to come to rest a little later, and the
   options.walls = Walls{Vector3d::Constant(-5), Vector3d::Constant(5), 0x1p-30};
   World<2> world(options);
   world.add_body(ball<2>(1, {-3, 0, -3}, {0, -3, 0}, zero));
-  const BodyId goes = world.add_body(bouncy(body<2>(Box{{1, 1, 1}}, motion<2>({-2, -3, -2}, {}, {-1, 0, 0})), 0.999));
+  const BodyId goes =
+      world.add_body(bouncy(body<2>(Box{{1, 1, 1}}, motion<2>({-2, -3, -2}, {0, 0, 0}, {-1, 0, 0})), 0.999));
   world.advance_to(2);
   world.remove_body(goes);
   World<2> loaded(options);
