@@ -11,9 +11,11 @@
 #include "kds/member_named.hpp"
 
 #include <concepts>
+#include <cstddef>
 #include <iterator>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace kds {
 
@@ -50,13 +52,37 @@ template <class R>
 concept Removes = requires(R& rule, Id id, RepairOf<R>& repair) {
   rule.remove(id, repair);
 };
+template <class R, std::size_t I>
+concept IsTold = ReportsChanges<typename R::template InnerAt<I>>;
+template <class R, std::size_t I>
+concept HearsWhatIsReported =
+    std::derived_from<RepairOf<typename R::template InnerAt<I>>, Reports<typename R::template HeardAt<I>>>;
+template <class R, std::size_t I>
+concept FollowsAt = requires(R& rule, std::span<const typename R::template HeardAt<I>> changes, RepairOf<R>& repair) {
+  { rule.follow(From<I>(), changes, repair) } -> std::same_as<Effect>;
+};
 template <class R>
-concept HearsWhatIsReported = std::derived_from<RepairOf<typename R::Inner>, Reports<typename R::Heard>>;
-template <class R>
-concept Follows = OuterRule<R> && ReportsChanges<typename R::Inner> &&
-    requires(R& rule, std::span<const typename R::Heard> changes, RepairOf<R>& repair) {
+concept FollowsOne = requires(R& rule, std::span<const typename R::Heard> changes, RepairOf<R>& repair) {
   { rule.follow(changes, repair) } -> std::same_as<Effect>;
 };
+
+/// Whether all inner rules of R report something; report what it is to hear; and R follows each.
+template <class R, class Places = std::make_index_sequence<Standing<R>::places>>
+struct OfAllPlaces;
+template <class R, std::size_t... I>
+struct OfAllPlaces<R, std::index_sequence<I...>> {
+  static constexpr bool told = (IsTold<R, I> && ...);
+  static constexpr bool hears = (HearsWhatIsReported<R, I> && ...);
+  static constexpr bool follows = (FollowsAt<R, I> && ...);
+};
+template <class R>
+struct OfAllPlaces<R, std::index_sequence<0>> {
+  static constexpr bool told = IsTold<R, 0>;
+  static constexpr bool hears = HearsWhatIsReported<R, 0>;
+  static constexpr bool follows = FollowsOne<R>;
+};
+template <class R>
+concept Follows = OuterRule<R> && OfAllPlaces<R>::told && OfAllPlaces<R>::follows;
 template <class R>
 concept TakesElements = Follows<R> || (Inserts<R> && Removes<R>);
 template <class R>

@@ -112,7 +112,7 @@ struct Deaf : StandsOn<Reports> {
   Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
   void follow(std::span<const int>, Repair<Value>&) {}
 };
-struct HearsOfOthers : StandsOn<Reports, float> {
+struct HearsOfOthers : StandsOn<Telling<Reports, float>> {
   static constexpr const char* name = "HearsOfOthers";
   std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
   std::vector<Id> members(Slot) const { return {}; }
