@@ -73,9 +73,8 @@ class RankedListRule {
   }
   void insert(Id id, Pen& repair) {
     if (rank_.size() <= id) rank_.resize(repair.elements().end_id(), nobody);
-    const auto at = order_.insert(std::partition_point(order_.begin(), order_.end(),
-                                                       [&](Id other) { return is_before(other, id, repair); }),
-                                  id);
+    const auto at = order_.insert(
+        std::partition_point(order_.begin(), order_.end(), [&](Id other) { return is_before(other, id, repair); }), id);
     const auto i = static_cast<std::size_t>(at - order_.begin());
     number(i, order_.size());
     renew(i, i + 1, repair);

@@ -26,7 +26,8 @@ struct TetrahedronChange {
 };
 
 /// Numbers the edges between points, each of which is there as long as a tetrahedron has it. Edges to infinity have no
-/// number. The interface is that of TriangulationEdges, so that rules about edges work in space as they do in the plane.
+/// number. The interface is that of TriangulationEdges, so that rules about edges work in space as they do in the
+/// plane.
 ///
 /// Cost: O(1) on average for a tetrahedron that has changed; memory, four ids a tetrahedron, and of each edge its ends,
 /// a count and an entry of a hash table.

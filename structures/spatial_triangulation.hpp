@@ -8,8 +8,8 @@
 #include "structures/hidden_points.hpp"
 #include "structures/hull_facings.hpp"
 #include "structures/local_rebuild.hpp"
-#include "structures/spatial_edges.hpp"
 #include "structures/space_predicates.hpp"
+#include "structures/spatial_edges.hpp"
 #include "structures/tetrahedron_mesh.hpp"
 
 #include <algorithm>
@@ -43,16 +43,16 @@ namespace kds::structures {
 /// Papers: [Basch99], [Guibas04]; [Edelsbrunner96] for weights; [Devillers11]. Certificates of degree 5 for linear, 10
 /// for quadratic paths. Sampled paths are not supported: for them zero is no sign.
 ///
-/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9 of
-/// them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
+/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9
+/// of them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
 /// volumes); an element is in some 100 (not local in the worst case); every event is a change of the triangulation,
 /// except where a facet or edge of the hull turns, or a hidden point moves on (efficient). Insertion O(n^(1/3)) for the
 /// walk and O(neighbours); removal O(neighbours); a new motion that keeps the tetrahedra around it O(neighbours), any
 /// other a removal and an insertion. An event at the hull takes O(facets of the hull), without arithmetic.
 ///
-/// It reports its edges, and its tetrahedra, to rules that stand on it. Those about the edges of a Delaunay triangulation
-/// (ClosestPairRule, NearestNeighboursRule, SpanningTreeRule) are for points in space if it is given them in place of
-/// DelaunayRule: SpanningTreeRule<Path, SpatialDelaunayRule<Path>>.
+/// It reports its edges, and its tetrahedra, to rules that stand on it. Those about the edges of a Delaunay
+/// triangulation (ClosestPairRule, NearestNeighboursRule, SpanningTreeRule) are for points in space if it is given them
+/// in place of DelaunayRule: SpanningTreeRule<Path, SpatialDelaunayRule<Path>>.
 ///
 /// While all points stay in one plane there is no tetrahedron, and nothing is known of them: flat().
 template <class Path>
@@ -78,9 +78,7 @@ class SpatialTriangulationRule {
   /// The edges between points, under numbers that they keep.
   const SpatialEdges& edges() const { return edges_; }
   /// The vertex that represents a point: itself, or one that stays in the same place.
-  Id vertex(Id id) const requires(!weighted) {
-    return hidden_.contains(id) ? same_as_[id] : id;
-  }
+  Id vertex(Id id) const requires(!weighted) { return hidden_.contains(id) ? same_as_[id] : id; }
   /// Whether some points share a vertex.
   bool has_shared_vertices() const requires(!weighted) { return hidden_.size() > 0; }
   /// Certificate that an edge is not longer than another.
@@ -189,8 +187,8 @@ class SpatialTriangulationRule {
   std::vector<std::uint8_t> hidden_kind_;  ///< by id: of the sphere that a hidden point is outside of
   std::vector<Id> same_as_;                ///< by id: the vertex that a hidden point without weight moves with
   SpatialEdges edges_;
-  std::uint32_t near_ = 0;                 ///< a tetrahedron to begin walks with
-  double busy_at_ = -never;                ///< time of the last event, and how many there have been at that time
+  std::uint32_t near_ = 0;   ///< a tetrahedron to begin walks with
+  double busy_at_ = -never;  ///< time of the last event, and how many there have been at that time
   std::uint64_t repairs_ = 0;
   std::uint64_t local_rebuilds_ = 0;
   std::uint64_t rebuilds_ = 0;

@@ -58,8 +58,7 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
 /// Finds a place for the points that were hidden in what has been replaced, and for vertices that are gone, and
 /// certifies.
 template <class Path>
-void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is,
-                                            Pen& repair) {
+void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair) {
   lost_ = lost_ || !replaced.sound;
   if (lost_) return;  // Everything will be built anew.
   std::vector<Id> orphans;
@@ -160,8 +159,8 @@ std::uint8_t SpatialTriangulationRule<Path>::sphere_kind(const TetrahedronMesh::
   return none;
 }
 
-/// The corner of a tetrahedron that a point moves with, one of a greater id, which the perturbation leaves lower; nobody
-/// if there is none. The point is hidden as long as that is a vertex.
+/// The corner of a tetrahedron that a point moves with, one of a greater id, which the perturbation leaves lower;
+/// nobody if there is none. The point is hidden as long as that is a vertex.
 template <class Path>
 Id SpatialTriangulationRule<Path>::companion(Id id, std::uint32_t t, const Predicates& is) const {
   const TetrahedronMesh::Corners corners = mesh_.corners(t);

@@ -58,45 +58,11 @@ struct NoListener {
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
-class Kinetic final : public KineticOf<Rule>,
-                      private MovingSet<typename Rule::Element>::Observer {
+class Kinetic final : public KineticOf<Rule>, private MovingSet<typename Rule::Element>::Observer {
   using Standing = detail::Standing<Rule>;
   using Choice = typename detail::CertificateOf<Rule>::type;
   static constexpr bool is_outer = OuterRule<Rule>;
-  static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
-  static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
-  static_assert(detail::CertificateOf<Rule>::checked);
-  static_assert(detail::Certifies<Rule>,
-                "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
-                "std::optional or std::variant of certificates");
-  static_assert(detail::NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
-  static_assert(
-      detail::Repairs<Rule>,
-      "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing, or takes its argument by value or of another "
-      "type: RepairOf<Rule>& is right");
-  static_assert(
-      is_outer || (detail::Inserts<Rule> && detail::Removes<Rule>),
-      "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing, or take another "
-      "argument than RepairOf<Rule>&");
-  static_assert(!is_outer || detail::OfAllPlaces<Rule>::told,
-                "kinetic rule: a rule that it stands on has no `Change`, and so tells nothing");
-  static_assert(!is_outer || !detail::OfAllPlaces<Rule>::told || detail::OfAllPlaces<Rule>::hears,
-                "kinetic rule: a rule that it stands on does not report the change that `Telling` names");
-  static_assert(!is_outer || detail::Follows<Rule>,
-                "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing (if it stands "
-                "on several rules, `Effect follow(From<I>, std::span<const Change>, Repair<Element>&)` for each)");
-  static_assert(!ReportsChanges<Rule> || detail::TellsItsState<Rule>,
-                "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
-  static_assert(TakesUpMotions<Rule> || !detail::NamesChange<Rule>,
-                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
-  static_assert(TakesUpMotions<Rule> || !detail::NamesKeeps<Rule>,
-                "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
-  static_assert(ChoosesMotions<Rule> || !detail::NamesKeeps<Rule>,
-                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
-  static_assert(BuildsAtOnce<Rule> || !detail::NamesBuild<Rule>,
-                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
-  static_assert(AuditsItself<Rule> || !detail::NamesAudit<Rule>,
-                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
+  static_assert(detail::RightRule<Rule>::checked);
   static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
 
  public:
@@ -115,10 +81,9 @@ class Kinetic final : public KineticOf<Rule>,
       : Kinetic(first_of(inners), inners, now, std::move(rule), std::move(listener)) {}
   /// The same with elements of its own, of another type perhaps.
   Kinetic(MovingSet<Element>& elements, typename Standing::Structures inners, double now, Rule rule = {},
-          Listener listener = {}) requires is_outer
-      : KineticOf<Rule>(elements, std::move(rule)),
-        listener_(std::move(listener)),
-        backwards_(elements.backwards()) {
+          Listener listener = {}) requires is_outer : KineticOf<Rule>(elements, std::move(rule)),
+                                                      listener_(std::move(listener)),
+                                                      backwards_(elements.backwards()) {
     stand_on(inners, now);
     build(now);
     follow_from_now_on();
@@ -293,7 +258,7 @@ class Kinetic final : public KineticOf<Rule>,
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
   double repaired_at_ = -never;
-  std::uint64_t repairs_ = 0;  ///< at that time, since the last edit
+  std::uint64_t repairs_ = 0;             ///< at that time, since the last edit
   typename Standing::Pointers inners_{};  ///< what it stands on
   std::array<std::uint64_t, Standing::places> followed_reports_{};
   std::vector<KineticEvent> untold_;  ///< events that were followed, of which the listener has not heard

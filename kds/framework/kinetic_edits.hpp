@@ -74,7 +74,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::require_idle() const {
   if (this->state_ == State::working) fail_busy();
   if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
   detail::for_each_place<Rule>([&](auto place) {
-    if (inner_at(place).reports_ != followed_at(place)) fail_use("a structure that it stands on has changed without it");
+    if (inner_at(place).reports_ != followed_at(place))
+      fail_use("a structure that it stands on has changed without it");
   });
 }
 

@@ -84,7 +84,7 @@ struct OfAllPlaces<R, std::index_sequence<0>> {
 template <class R>
 concept Follows = OuterRule<R> && OfAllPlaces<R>::told && OfAllPlaces<R>::follows;
 template <class R>
-concept TakesElements = Follows<R> || (Inserts<R> && Removes<R>);
+concept TakesElements = Follows<R> ||(Inserts<R>&& Removes<R>);
 template <class R>
 concept TellsItsState = requires(const R& rule) {
   { rule.changes_from_nothing() } -> std::same_as<typename ChangeOf<R>::Lists>;
@@ -167,6 +167,48 @@ KDS_MEMBER_NAMED(NamesChange, change);
 KDS_MEMBER_NAMED(NamesKeeps, keeps);
 KDS_MEMBER_NAMED(NamesBuild, build);
 KDS_MEMBER_NAMED(NamesAudit, audit);
+
+/// To be named wherever a structure is made of a rule: compiles only for rules, and says what is wrong with a class
+/// that is none, or which part of a rule would never be called.
+template <class Rule>
+struct RightRule {
+  static_assert(NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
+  static_assert(HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
+  static_assert(CertificateOf<Rule>::checked);
+  static_assert(Certifies<Rule>,
+                "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
+                "std::optional or std::variant of certificates");
+  static_assert(NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
+  static_assert(
+      Repairs<Rule>,
+      "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing, or takes its argument by value or of another "
+      "type: RepairOf<Rule>& is right");
+  static_assert(
+      OuterRule<Rule> || (Inserts<Rule> && Removes<Rule>),
+      "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing, or take another "
+      "argument than RepairOf<Rule>&");
+  static_assert(!OuterRule<Rule> || OfAllPlaces<Rule>::told,
+                "kinetic rule: a rule that it stands on has no `Change`, and so tells nothing");
+  static_assert(!OuterRule<Rule> || !OfAllPlaces<Rule>::told || OfAllPlaces<Rule>::hears,
+                "kinetic rule: a rule that it stands on does not report the change that `Telling` names");
+  static_assert(
+      !OuterRule<Rule> || Follows<Rule>,
+      "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing (if it stands "
+      "on several rules, `Effect follow(From<I>, std::span<const Change>, Repair<Element>&)` for each)");
+  static_assert(!ReportsChanges<Rule> || TellsItsState<Rule>,
+                "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
+  static_assert(TakesUpMotions<Rule> || !NamesChange<Rule>,
+                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
+  static_assert(TakesUpMotions<Rule> || !NamesKeeps<Rule>,
+                "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
+  static_assert(ChoosesMotions<Rule> || !NamesKeeps<Rule>,
+                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
+  static_assert(BuildsAtOnce<Rule> || !NamesBuild<Rule>,
+                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
+  static_assert(AuditsItself<Rule> || !NamesAudit<Rule>,
+                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
+  static constexpr bool checked = true;
+};
 
 }  // namespace detail
 

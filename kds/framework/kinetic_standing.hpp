@@ -17,8 +17,8 @@ namespace kds {
 
 // An event or edit of a structure ends in finish(): its certificates are made, and its followers told to wait for their
 // turn in the wave (wave.hpp), in which each is called when all that it stands on have been. Listeners are called when
-// the wave is over. Events and edits with reports are counted on both sides, so that a structure that has missed one (it
-// was loaded from a snapshot without the other, say) is noticed.
+// the wave is over. Events and edits with reports are counted on both sides, so that a structure that has missed one
+// (it was loaded from a snapshot without the other, say) is noticed.
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::stand_on(typename Standing::Structures& inners, double now) {
@@ -100,7 +100,8 @@ void Kinetic<Rule, Listener, Queue, Solver>::follow(double now, bool in_event, d
   Effect effect = Effect::internal;
   detail::for_each_place<Rule>([&](auto place) {
     if (told_at(place).changes_.empty()) return;
-    if (detail::follow_at(this->rule_, place, told_at(place).changes_, this->repair_) == Effect::external) effect = Effect::external;
+    if (detail::follow_at(this->rule_, place, told_at(place).changes_, this->repair_) == Effect::external)
+      effect = Effect::external;
   });
   if (in_event) {
     ++measures_.followed;
@@ -132,8 +133,8 @@ bool Kinetic<Rule, Listener, Queue, Solver>::untold() const {
   return result;
 }
 
-/// An event of its own, or of a structure that it stands on, that has been passed over. Samples of such a structure that
-/// are due can wait.
+/// An event of its own, or of a structure that it stands on, that has been passed over. Samples of such a structure
+/// that are due can wait.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::require_nothing_before(double now) const {
   double first = next_time();

@@ -114,15 +114,15 @@ struct Told<Telling<InnerRule, Heard>> {
 /// has come; is to go, and is still there; or has its new motion (without change(): remove() and then insert()). It has
 /// no build() and keeps().
 ///
-/// Laws. (1) Whenever insert(), remove(), change() or repair() of the outer rule is called, inner() is valid, and so are
-/// all inner rules: all their events up to that time have been processed. Certificates may depend on them; but follow()
-/// must mark all slots whose certificates have changed, which the changes must tell. (2) In one event or edit the outer
-/// rule is called after all inner ones: then follow() once for each place whose rule has reported something, in the
-/// order of the places; then its own insert(), remove() or change(). So at each call all inner rules have taken up the
-/// same event or edit. Certificates are made when follow() has been called for the last place. (3) Events of one time
-/// are taken up one by one, in the order of the simulator: those of A, then those of B, then those of the outer rule;
-/// an event of an inner rule that is due again by then comes before those too. While follow() is called, inner rules
-/// may have further events of this time, of which it will be told. (4) The first call is follow() with
+/// Laws. (1) Whenever insert(), remove(), change() or repair() of the outer rule is called, inner() is valid, and so
+/// are all inner rules: all their events up to that time have been processed. Certificates may depend on them; but
+/// follow() must mark all slots whose certificates have changed, which the changes must tell. (2) In one event or edit
+/// the outer rule is called after all inner ones: then follow() once for each place whose rule has reported something,
+/// in the order of the places; then its own insert(), remove() or change(). So at each call all inner rules have taken
+/// up the same event or edit. Certificates are made when follow() has been called for the last place. (3) Events of one
+/// time are taken up one by one, in the order of the simulator: those of A, then those of B, then those of the outer
+/// rule; an event of an inner rule that is due again by then comes before those too. While follow() is called, inner
+/// rules may have further events of this time, of which it will be told. (4) The first call is follow() with
 /// inner().changes_from_nothing(), for each place; then insert() of each element, if there is one. (5) An outer rule
 /// changes neither the inner ones nor the elements. (6) Listeners are called when all structures are valid, that of a
 /// structure after those of the structures that it stands on.
@@ -182,8 +182,7 @@ class KineticOf : protected detail::Follower {
   virtual double next_time() const = 0;
 
  protected:
-  KineticOf(MovingSet<Element>& elements, Rule rule)
-      : elements_(elements), rule_(std::move(rule)), repair_(elements) {}
+  KineticOf(MovingSet<Element>& elements, Rule rule) : elements_(elements), rule_(std::move(rule)), repair_(elements) {}
   ~KineticOf() = default;
 
   /// Whether a listener, its own or of one that it stands on, has not heard of all events yet.

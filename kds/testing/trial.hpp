@@ -25,18 +25,18 @@ namespace kds::testing {
 struct TrialOptions {
   std::uint64_t seed = 1;
   Kind kind = Kind::generic;
-  int steps = 20;            ///< each some time without edits, and an edit
-  std::size_t first = 8;     ///< elements at the beginning
-  std::size_t most = 16;     ///< elements
-  double window = never;     ///< of the simulator, in seconds
-  std::size_t one_in = 1;    ///< states after events of which one is checked; those after edits all are
-  bool backwards = true;     ///< in the end, run back in time and forward again, where elements can
+  int steps = 20;          ///< each some time without edits, and an edit
+  std::size_t first = 8;   ///< elements at the beginning
+  std::size_t most = 16;   ///< elements
+  double window = never;   ///< of the simulator, in seconds
+  std::size_t one_in = 1;  ///< states after events of which one is checked; those after edits all are
+  bool backwards = true;   ///< in the end, run back in time and forward again, where elements can
 };
 
 /// What a trial has found. A right structure has nothing wrong; events and states tell whether it was tried at all.
 struct Findings {
   std::vector<KineticEvent> events{};  ///< of all structures
-  std::uint64_t states = 0;  ///< that were checked
+  std::uint64_t states = 0;            ///< that were checked
   std::uint64_t wrong = 0;
   std::string first{};  ///< the first that was wrong, in words
 
@@ -104,7 +104,8 @@ template <class List, class Rule>
 struct Appended;
 template <class... Rules, class Rule>
 struct Appended<std::tuple<Rules...>, Rule> {
-  using type = std::conditional_t<(std::is_same_v<Rules, Rule> || ...), std::tuple<Rules...>, std::tuple<Rules..., Rule>>;
+  using type =
+      std::conditional_t<(std::is_same_v<Rules, Rule> || ...), std::tuple<Rules...>, std::tuple<Rules..., Rule>>;
 };
 template <class List, class Rule>
 struct With : Appended<typename BelowOf<List, Rule>::type, Rule> {};
@@ -181,8 +182,8 @@ class Trial {
       set_.insert(static_cast<Id>(2 * i), make_(random, options_.kind, start), start);
     }
     Tower<Rule> tower(set_, start, rule_, Recorder{&events_});
-    auto simulator = std::apply([&](auto&... structures) { return Simulator(start, structures...); },
-                                tower.structures());
+    auto simulator =
+        std::apply([&](auto&... structures) { return Simulator(start, structures...); }, tower.structures());
     if (options_.window < never) simulator.set_window(options_.window);
     look_at(tower, simulator);
     go_on(tower, simulator, 1, options_.steps / 2);

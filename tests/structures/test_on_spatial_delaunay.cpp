@@ -104,7 +104,8 @@ int check_nearest(const NearestNeighboursRule<Path, Delaunay>& rule, const Movin
   for (const Id id : set.ids()) {
     const auto nearest = rule.nearest(id);
     if (rule.inner().flat()) continue;
-    for (const Id other : set.ids()) wrong += other != id && (!nearest || compare(set, now, id, other, id, *nearest) > 0);
+    for (const Id other : set.ids())
+      wrong += other != id && (!nearest || compare(set, now, id, other, id, *nearest) > 0);
   }
   return wrong;
 }
@@ -122,7 +123,8 @@ struct ToldRule : StandsOn<Delaunay, Telling<Delaunay, TetrahedronChange>> {
   Effect follow(From<0>, std::span<const EdgeChange> changes, Repair<Path>&) {
     for (const EdgeChange& change : changes) {
       const auto known = edges.find(change.edge);
-      if ((change.what == EdgeChange::What::came) != (known == edges.end())) throw std::logic_error("comes, or goes, twice");
+      if ((change.what == EdgeChange::What::came) != (known == edges.end()))
+        throw std::logic_error("comes, or goes, twice");
       if (known != edges.end() && known->second != change.ends) throw std::logic_error("an edge with other ends");
       if (change.what == EdgeChange::What::came) edges[change.edge] = change.ends;
       if (change.what == EdgeChange::What::went) edges.erase(known);

@@ -414,7 +414,8 @@ TEST_CASE("a structure says which mistake has been made with what it stands on",
     const Snapshot before = save(alone, sets.right);
     all.advance_to(1);
     restore(before, alone, sets.right);
-    CHECK_THROWS_WITH(sets.both.audit(1), Catch::Contains("Both: a structure that it stands on has changed without it"));
+    CHECK_THROWS_WITH(sets.both.audit(1),
+                      Catch::Contains("Both: a structure that it stands on has changed without it"));
   }
   SECTION("its rule throws: then none of those that have been called can be used") {
     sets.both.edit([](BothRule& rule, auto&) { rule.throws = true; }, 0);
