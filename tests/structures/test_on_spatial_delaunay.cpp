@@ -192,16 +192,16 @@ std::size_t trials(const Check& check, std::uint64_t seed) {
 }  // namespace
 
 TEST_CASE("a triangulation in space tells which edges and tetrahedra come and go", "[spatial_triangulation]") {
-  CHECK(trials<ToldRule>(check_told, 820) > 100);
+  CHECK(trials<ToldRule>(check_told, 820) > 50);
 }
 
 TEST_CASE("a spanning tree of points in space stands on their triangulation", "[spatial_triangulation]") {
-  CHECK(trials<SpanningTreeRule<Path, Delaunay>>(check_tree, 830) > 100);
+  CHECK(trials<SpanningTreeRule<Path, Delaunay>>(check_tree, 830) > 50);
 }
 
 TEST_CASE("a closest pair and nearest neighbours in space", "[spatial_triangulation]") {
-  CHECK(trials<ClosestPairRule<Path, Delaunay>>(check_pair, 840) > 100);
-  CHECK(trials<NearestNeighboursRule<Path, Delaunay>>(check_nearest, 850) > 100);
+  CHECK(trials<ClosestPairRule<Path, Delaunay>>(check_pair, 840) > 50);
+  CHECK(trials<NearestNeighboursRule<Path, Delaunay>>(check_nearest, 850) > 50);
 }
 
 }  // namespace test_on_spatial_delaunay
