@@ -33,7 +33,9 @@ using List = Kinetic<ListRule<Value>>;
 struct ThinsOut {
   MovingSet<Value>* values;
   void operator()(const SmallestGapRule& rule, const KineticEvent& event) const {
-    if (event.effect == Effect::external && values->size() > 4) values->remove((*rule.pair())[1], event.time);
+    if (event.effect == Effect::internal) return;
+    values->process_due(event.time);  // Other events of this time come before an edit: this is called for them then.
+    if (values->size() > 4) values->remove((*rule.pair())[1], event.time);
   }
 };
 

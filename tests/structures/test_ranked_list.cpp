@@ -83,7 +83,7 @@ TEST_CASE("a list under any ranking is in order, exactly", "[ranked_list]") {
       events += values.events.size() + points.events.size();
     }
   }
-  CHECK(events > 2000);
+  CHECK(events > 1000);
 }
 
 TEST_CASE("a list tells whose right neighbour has changed, and nothing else is needed", "[ranked_list]") {
