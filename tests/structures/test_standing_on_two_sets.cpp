@@ -54,9 +54,9 @@ struct BothRule : StandsOn<Delaunay, Delaunay>, Quiet<Path> {
 };
 
 struct TwoSets {
-  MovingSet<Path> left{}, right{};
+  MovingSet<Path> left{}, right{}, own{};  // the last has no elements
   Kinetic<Delaunay> first{left, 0}, second{right, 0};
-  Kinetic<BothRule> both{{first, second}, 0};
+  Kinetic<BothRule> both{own, {first, second}, 0};
 
   /// The same motions in both, so that all their events are at the same times.
   explicit TwoSets(std::uint64_t seed, Id count = 12) {
