@@ -1,4 +1,4 @@
-// Two pairs of moving points of the plane in order of their distances.
+// Two pairs of moving points, of the plane or of space, in order of their distances.
 #pragma once
 
 #include "kds/bounded.hpp"
@@ -7,6 +7,17 @@
 #include "kds/motion.hpp"
 
 namespace kds::certificates {
+
+template <int Degree>
+struct PointMotion;
+
+namespace detail {
+/// How many coordinates a distance is made of.
+template <class Path>
+inline constexpr int axes = 2;
+template <int Degree>
+inline constexpr int axes<PointMotion<Degree>> = 3;
+}  // namespace detail
 
 /// |d - c|^2 >= |b - a|^2: a and b are not farther from each other than c and d. Degree 2 for linear, 4 for quadratic
 /// paths.
@@ -26,7 +37,7 @@ struct DistanceOrder {
     const auto apart = [&](const Path& p, const Path& q, int axis) {
       return square(difference_about<Number>(q.axis(axis), p.axis(axis), epoch));
     };
-    return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
+    return compare(apart);
   }
 
   Ball<DoubleDouble> extended_value(double t) const requires(!requires { Path::sampled; }) {
@@ -34,7 +45,7 @@ struct DistanceOrder {
       const Ball<DoubleDouble> x = extended_difference(q.axis(axis), p.axis(axis), t);
       return x * x;
     };
-    return apart(c, d, 0) + apart(c, d, 1) - (apart(a, b, 0) + apart(a, b, 1));
+    return compare(apart);
   }
 
   /// Cheap and sufficient: both pairs are the same.
@@ -43,6 +54,20 @@ struct DistanceOrder {
   bool is_negative_of(const DistanceOrder& other) const {
     return is_same_thing(a, other.c) && is_same_thing(b, other.d) && is_same_thing(c, other.a) &&
            is_same_thing(d, other.b);
+  }
+
+ private:
+  /// apart(p, q, axis): the square of their distance along an axis.
+  template <class Apart>
+  auto compare(const Apart& apart) const {
+    const auto distance = [&](const Path& p, const Path& q) {
+      if constexpr (detail::axes<Path> == 3) {
+        return apart(p, q, 0) + apart(p, q, 1) + apart(p, q, 2);
+      } else {
+        return apart(p, q, 0) + apart(p, q, 1);
+      }
+    };
+    return distance(c, d) - distance(a, b);
   }
 };
 

@@ -18,6 +18,8 @@ struct Ascending {
 
   Ascending(Lasting<Value> low, Lasting<Value> high) : lower(low), upper(high) {}
 
+  bool is_negative_of(const Ascending& other) const { return &lower == &other.upper && &upper == &other.lower; }
+
   template <class Number>
   auto polynomial(double epoch) const {
     return difference_about<Number>(upper, lower, epoch);

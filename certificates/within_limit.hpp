@@ -16,6 +16,10 @@ struct WithinLimit {
   double limit;
   double side;  ///< 1 or -1
 
+  bool is_negative_of(const WithinLimit& other) const {
+    return side == -other.side && limit == other.limit && value == other.value;
+  }
+
   template <class Number>
   auto polynomial(double epoch) const {
     return (about<Number>(value, epoch) - constant<Number>(limit)) * -side;

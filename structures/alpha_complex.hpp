@@ -59,7 +59,7 @@ struct AlphaTriangleChange {
 /// stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is known
 /// (DelaunayRule::flat).
 template <class Path, class Delaunay = DelaunayRule<Path>>
-class AlphaComplexRule : public StandsOn<Delaunay, TriangleChange> {
+class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
  public:
   static constexpr const char* name = "AlphaComplex";
   using Element = Path;

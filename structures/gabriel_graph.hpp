@@ -42,7 +42,7 @@ namespace kds::structures {
 /// Points that stay in one place count as one (DelaunayRule::vertex). While all points stay on one line nothing is
 /// known (DelaunayRule::flat).
 template <class Path, class Delaunay = DelaunayRule<Path>>
-class GabrielGraphRule : public StandsOn<Delaunay, TriangleChange> {
+class GabrielGraphRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
  public:
   static constexpr const char* name = "GabrielGraph";
   using Element = Path;

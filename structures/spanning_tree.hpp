@@ -35,6 +35,8 @@ class SpanningTreeRule
  public:
   static constexpr const char* name = "SpanningTree";
   using Edge = TriangulationEdges::Number;
+  using Change = EdgeChange;
+  using Pen = Repair<Path, Change>;
 
   /// Whether an edge of the triangulation is in the tree.
   bool contains(Edge edge) const { return edge < in_tree_.size() && in_tree_[edge]; }
@@ -63,7 +65,9 @@ class SpanningTreeRule
     }
     const auto [a, b] = ids(shorter);
     in_tree_[root(a) == root(b) ? longer : shorter] = true;
-    return in_tree_[longer] ? Effect::internal : Effect::external;
+    if (in_tree_[longer]) return Effect::internal;
+    exchanged_ = {longer, shorter};
+    return Effect::external;
   }
   Effect renewed(std::span<const EdgeChange> /*changes*/) {
     const std::vector<std::uint8_t> before = std::exchange(in_tree_, {});
@@ -73,13 +77,50 @@ class SpanningTreeRule
     return in_tree_ == before ? Effect::internal : Effect::external;
   }
 
+  // It reports which edges come into the tree, leave it, and have an end that moves otherwise.
+  Effect repair(Slot slot, Pen& repair) {
+    const Effect effect = Base::repair(slot, repair);
+    if (effect == Effect::external) {
+      for (const Edge edge : exchanged_) tell(edge, repair);
+    }
+    return effect;
+  }
+  Effect follow(std::span<const EdgeChange> changes, Pen& repair) {
+    const Effect effect = Base::follow(changes, repair);
+    told_.resize(std::max<std::size_t>(told_.size(), in_tree_.size()), nothing);
+    for (Edge edge = 0; edge < told_.size(); ++edge) tell(edge, repair);
+    for (const EdgeChange& change : changes) {
+      if (change.what == EdgeChange::What::moved && contains(change.edge)) {
+        repair.report({EdgeChange::What::moved, change.edge, told_[change.edge]});
+      }
+    }
+    return effect;
+  }
+  std::vector<EdgeChange> changes_from_nothing() const {
+    std::vector<EdgeChange> changes;
+    for (Edge edge = 0; edge < told_.size(); ++edge) {
+      if (contains(edge)) changes.push_back({EdgeChange::What::came, edge, told_[edge]});
+    }
+    return changes;
+  }
+
   template <class Archive>
   void archive(Archive& archive) {
     Base::archive(archive);
-    archive(in_tree_);
+    archive(in_tree_, told_);
   }
 
  private:
+  using Ends = std::array<Id, 2>;
+  static constexpr Ends nothing{nobody, nobody};
+
+  /// A number may be that of another edge than before.
+  void tell(Edge edge, Pen& repair) {
+    const Ends before = std::exchange(told_[edge], contains(edge) ? ids(edge) : nothing);
+    if (before == told_[edge]) return;
+    if (before != nothing) repair.report({EdgeChange::What::went, edge, before});
+    if (told_[edge] != nothing) repair.report({EdgeChange::What::came, edge, told_[edge]});
+  }
   void clear_parts() {
     parent_.resize(this->inner().mesh().end_vertex());
     std::iota(parent_.begin(), parent_.end(), Id{0});
@@ -97,6 +138,8 @@ class SpanningTreeRule
   }
 
   std::vector<std::uint8_t> in_tree_;  ///< by edge
+  std::vector<Ends> told_;             ///< by edge: the ends, as it has reported them; nothing if it is not in the tree
+  std::array<Edge, 2> exchanged_{};    ///< in the event that is processed: the one that went and the one that came
   std::vector<Id> parent_;             ///< of points, in parts of the tree
 };
 

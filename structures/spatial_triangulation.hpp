@@ -1,6 +1,7 @@
 // Kinetic Delaunay and regular triangulations of moving points in space.
 #pragma once
 
+#include "certificates/distance_order.hpp"
 #include "kds/audit.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "structures/bowyer_watson.hpp"
@@ -8,12 +9,15 @@
 #include "structures/hull_facings.hpp"
 #include "structures/local_rebuild.hpp"
 #include "structures/space_predicates.hpp"
+#include "structures/spatial_edges.hpp"
 #include "structures/tetrahedron_mesh.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -39,12 +43,16 @@ namespace kds::structures {
 /// Papers: [Basch99], [Guibas04]; [Edelsbrunner96] for weights; [Devillers11]. Certificates of degree 5 for linear, 10
 /// for quadratic paths. Sampled paths are not supported: for them zero is no sign.
 ///
-/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9 of
-/// them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
+/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9
+/// of them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
 /// volumes); an element is in some 100 (not local in the worst case); every event is a change of the triangulation,
 /// except where a facet or edge of the hull turns, or a hidden point moves on (efficient). Insertion O(n^(1/3)) for the
 /// walk and O(neighbours); removal O(neighbours); a new motion that keeps the tetrahedra around it O(neighbours), any
 /// other a removal and an insertion. An event at the hull takes O(facets of the hull), without arithmetic.
+///
+/// It reports its edges, and its tetrahedra, to rules that stand on it. Those about the edges of a Delaunay
+/// triangulation (ClosestPairRule, NearestNeighboursRule, SpanningTreeRule) are for points in space if it is given them
+/// in place of DelaunayRule: SpanningTreeRule<Path, SpatialDelaunayRule<Path>>.
 ///
 /// While all points stay in one plane there is no tetrahedron, and nothing is known of them: flat().
 template <class Path>
@@ -67,6 +75,20 @@ class SpatialTriangulationRule {
   /// The vertices that an edge joins to this one, ascending; `infinite`, the last, for those of the hull.
   /// Precondition: it is a vertex. O(neighbours).
   std::vector<Id> neighbours(Id vertex) const;
+  /// The edges between points, under numbers that they keep.
+  const SpatialEdges& edges() const { return edges_; }
+  /// The vertex that represents a point: itself, or one that stays in the same place.
+  Id vertex(Id id) const requires(!weighted) { return hidden_.contains(id) ? same_as_[id] : id; }
+  /// Whether some points share a vertex.
+  bool has_shared_vertices() const requires(!weighted) { return hidden_.size() > 0; }
+  /// Certificate that an edge is not longer than another.
+  using LengthOrder = certificates::DistanceOrder<Path>;
+  LengthOrder length_order(SpatialEdges::Number edge, SpatialEdges::Number other, const MovingSet<Path>& x) const
+      requires(!weighted) {
+    const auto [a, b] = edges_.ends(edge);
+    const auto [c, d] = edges_.ends(other);
+    return {x[a], x[b], x[c], x[d]};
+  }
   /// The corners of the facets of the hull, counter-clockwise seen from outside. O(facets of the hull).
   std::vector<std::array<Id, 3>> hull() const;
   /// How often a part has been built anew because it could not be repaired by flips; and everything.
@@ -79,6 +101,9 @@ class SpatialTriangulationRule {
   using Direction = certificates::DirectionOrder<Path, 3>;
   using Choice = std::variant<std::monostate, InSphere, Orientation, Facing, Direction>;
 
+  using Change = Changes<EdgeChange, TetrahedronChange>;
+  using Pen = Repair<Path, Change>;
+
   // Slots of tetrahedron t: `stride` t + i for its facets, each known by the lesser of its two numbers; then, with i =
   // 4, its volume or, if it is infinite, the way its facet of the hull faces. At an edge of the hull, which is the
   // facet of two infinite tetrahedra, the greater number has the way that the edge leads. With weights five more: those
@@ -86,17 +111,22 @@ class SpatialTriangulationRule {
   static constexpr Slot stride = weighted ? 10 : 5;
   Choice certificate(Slot slot, const MovingSet<Path>& x) const;
   std::vector<Id> members(Slot slot) const;
-  Effect repair(Slot slot, Repair<Path>& repair);
-  void insert(Id id, Repair<Path>& repair);
-  void remove(Id id, Repair<Path>& repair);
-  bool keeps(Id id, const Path& next, Repair<Path>& repair);
-  void change(Id id, Repair<Path>& repair);
-  void build(Repair<Path>& repair) { rebuild(nobody, repair); }
+  Effect repair(Slot slot, Pen& repair);
+  void insert(Id id, Pen& repair);
+  void remove(Id id, Pen& repair);
+  bool keeps(Id id, const Path& next, Pen& repair);
+  void change(Id id, Pen& repair);
+  void build(Pen& repair) {
+    rebuild(nobody, repair);
+    report_touched(repair);
+  }
   void audit(const MovingSet<Path>& x, double now) const;
+  std::tuple<std::vector<EdgeChange>, std::vector<TetrahedronChange>> changes_from_nothing() const;
 
   template <class Archive>
   void archive(Archive& archive) {
     archive(mesh_, hull_, hidden_, kind_, hidden_kind_, near_, busy_at_, repairs_, local_rebuilds_, rebuilds_);
+    archive(edges_, same_as_);
     if constexpr (Archive::loading) {
       archive.require(kind_.size() == 5 * std::size_t{mesh_.end_tetrahedron()} || flat(), "a mesh has other facets");
     }
@@ -114,7 +144,8 @@ class SpatialTriangulationRule {
                             const MovingSet<Path>& x) const;
   Choice hidden_certificate(Id id, Slot part, const MovingSet<Path>& x) const;
   static std::uint8_t sphere_kind(const TetrahedronMesh::Corners& abcd, Id e, const Predicates& is);
-  bool moves_along(Id id, std::uint32_t t, const Predicates& is) const;
+  Id companion(Id id, std::uint32_t t, const Predicates& is) const;
+  bool moves_along(Id id, std::uint32_t t, const Predicates& is) const { return companion(id, t, is) != nobody; }
   std::uint8_t hidden_kind(Id id, const Predicates& is) const;
   std::uint8_t facet_kind(Facet f, const Predicates& is) const;
   bool holds(Facet f, const Predicates& is) const;
@@ -131,37 +162,41 @@ class SpatialTriangulationRule {
     return {x[p[0]], x[p[1]], x[p[2]], x[p[3]]};
   }
 
-  bool flip(Slot slot, const Predicates& is, Repair<Path>& repair);
-  bool build_around(std::vector<std::uint32_t> wrong, Id without, const Predicates& is, Repair<Path>& repair);
-  void place(Id id, std::uint32_t near, const Predicates& is, Repair<Path>& repair);
-  void settle(const Replaced& replaced, Id without, const Predicates& is, Repair<Path>& repair);
+  bool flip(Slot slot, const Predicates& is, Pen& repair);
+  bool build_around(std::vector<std::uint32_t> wrong, Id without, const Predicates& is, Pen& repair);
+  void place(Id id, std::uint32_t near, const Predicates& is, Pen& repair);
+  void settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair);
   std::uint32_t home_of(Id id, const std::vector<std::uint32_t>& tetrahedra, const Predicates& is) const;
-  void hide(Id id, std::uint32_t t, const Predicates& is, Repair<Path>& repair);
-  void reveal(Id id, Repair<Path>& repair);
-  void prove(const std::vector<std::uint32_t>& tetrahedra, const Predicates& is, Repair<Path>& repair);
-  void prove_facet(Facet f, const Predicates& is, Repair<Path>& repair);
+  void hide(Id id, std::uint32_t t, const Predicates& is, Pen& repair);
+  void reveal(Id id, Pen& repair);
+  void prove(const std::vector<std::uint32_t>& tetrahedra, const Predicates& is, Pen& repair);
+  void prove_facet(Facet f, const Predicates& is, Pen& repair);
   void begin() {
     at_hull_ = lost_ = false;
     places_ = 0;
   }
   bool sound() const { return !lost_ && !(at_hull_ && !hull_.goes_round_once(mesh_)); }
-  bool look_round(const Predicates& is, Repair<Path>& repair);
-  void rebuild(Id without, Repair<Path>& repair);
+  bool look_round(const Predicates& is, Pen& repair);
+  void rebuild(Id without, Pen& repair);
+  void report_touched(Pen& repair);
 
   TetrahedronMesh mesh_;
   HullFacings hull_;
   HiddenPoints hidden_;
   std::vector<std::uint8_t> kind_;         ///< by 5 t + i, as slots are
   std::vector<std::uint8_t> hidden_kind_;  ///< by id: of the sphere that a hidden point is outside of
-  std::uint32_t near_ = 0;                 ///< a tetrahedron to begin walks with
-  double busy_at_ = -never;                ///< time of the last event, and how many there have been at that time
+  std::vector<Id> same_as_;                ///< by id: the vertex that a hidden point without weight moves with
+  SpatialEdges edges_;
+  std::uint32_t near_ = 0;   ///< a tetrahedron to begin walks with
+  double busy_at_ = -never;  ///< time of the last event, and how many there have been at that time
   std::uint64_t repairs_ = 0;
   std::uint64_t local_rebuilds_ = 0;
   std::uint64_t rebuilds_ = 0;
   // Of this event or edit: whether it has changed what HullFacings stores; whether a point has found no place.
   bool at_hull_ = false;
   bool lost_ = false;
-  std::size_t places_ = 0;  ///< how many points it has placed
+  std::size_t places_ = 0;              ///< how many points it has placed
+  std::vector<std::uint32_t> touched_;  ///< tetrahedra that are other ones
 };
 
 /// The Delaunay triangulation of points in space, and the regular triangulation of such with weights.
@@ -247,7 +282,7 @@ std::vector<Id> SpatialTriangulationRule<Path>::members(Slot slot) const {
 }
 
 template <class Path>
-Effect SpatialTriangulationRule<Path>::repair(Slot slot, Repair<Path>& repair) {
+Effect SpatialTriangulationRule<Path>::repair(Slot slot, Pen& repair) {
   if (busy_at_ != repair.now()) repairs_ = 0;
   busy_at_ = repair.now();
   const Predicates is{repair.elements(), repair.now()};
@@ -274,9 +309,26 @@ Effect SpatialTriangulationRule<Path>::repair(Slot slot, Repair<Path>& repair) {
     ++local_rebuilds_;
   }
   if (repaired && !sound()) repaired = !lost_ && look_round(is, repair);
-  if (repaired) return effect;
-  rebuild(nobody, repair);
-  return Effect::external;
+  if (!repaired) {
+    rebuild(nobody, repair);
+    effect = Effect::external;
+  }
+  report_touched(repair);
+  return effect;
+}
+
+template <class Path>
+auto SpatialTriangulationRule<Path>::changes_from_nothing() const
+    -> std::tuple<std::vector<EdgeChange>, std::vector<TetrahedronChange>> {
+  std::vector<EdgeChange> edges;
+  for (SpatialEdges::Number edge = 0; edge < edges_.end(); ++edge) {
+    if (edges_.contains(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
+  }
+  std::vector<TetrahedronChange> tetrahedra;
+  for (std::uint32_t t = 0; t < mesh_.end_tetrahedron(); ++t) {
+    if (mesh_.in_use(t)) tetrahedra.push_back({t});
+  }
+  return {std::move(edges), std::move(tetrahedra)};
 }
 
 template <class Path>
@@ -284,6 +336,7 @@ void SpatialTriangulationRule<Path>::audit(const MovingSet<Path>& x, double now)
   const auto fail = [](Id id, const char* what) {
     throw AuditFailure(name + (": id " + std::to_string(id)) + ": " + what);
   };
+  edges_.audit(mesh_);
   if (flat()) return;
   mesh_.audit();
   if (!hull_.goes_round_once(mesh_)) fail(nobody, "the hull does not go round once");
@@ -306,6 +359,7 @@ void SpatialTriangulationRule<Path>::audit(const MovingSet<Path>& x, double now)
     const std::uint32_t t = hidden_.place(id);
     if (!mesh_.in_use(t) || !mesh_.finite(t)) fail(id, "is hidden in no tetrahedron");
     if (!weighted && !moves_along(id, t, is)) fail(id, "is hidden, but not where a vertex is");
+    if (!weighted && (!mesh_.contains(same_as_[id]) || !is.same(id, same_as_[id]))) fail(id, "is with another vertex");
     if (weighted && hidden_kind_[id] != hidden_kind(id, is)) fail(id, "has a wrong kind of certificate");
   }
   if (hidden != hidden_.size()) fail(nobody, "the number of hidden points is another");

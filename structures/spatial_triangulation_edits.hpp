@@ -15,7 +15,7 @@ namespace kds::structures {
 
 /// Flips the facet whose certificate has failed; of a tetrahedron that has turned over, a facet of the hull.
 template <class Path>
-bool SpatialTriangulationRule<Path>::flip(Slot slot, const Predicates& is, Repair<Path>& repair) {
+bool SpatialTriangulationRule<Path>::flip(Slot slot, const Predicates& is, Pen& repair) {
   const std::uint32_t t = slot / stride;
   const Slot part = slot % stride;
   Replaced replaced;
@@ -31,7 +31,7 @@ bool SpatialTriangulationRule<Path>::flip(Slot slot, const Predicates& is, Repai
 /// False if everything has to be built anew.
 template <class Path>
 bool SpatialTriangulationRule<Path>::build_around(std::vector<std::uint32_t> wrong, Id without, const Predicates& is,
-                                                  Repair<Path>& repair) {
+                                                  Pen& repair) {
   const auto hidden = [this](std::uint32_t t, const auto& take) { hidden_.for_each(t, take); };
   const std::optional<Replaced> replaced = LocalRebuild<Predicates>(mesh_, is)(std::move(wrong), without, hidden);
   if (replaced) settle(*replaced, without, is, repair);
@@ -40,7 +40,7 @@ bool SpatialTriangulationRule<Path>::build_around(std::vector<std::uint32_t> wro
 
 /// Makes a vertex of a point, or hides it.
 template <class Path>
-void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Predicates& is, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Predicates& is, Pen& repair) {
   Mesher mesher(mesh_, is);
   const std::uint32_t t = mesher.locate(id, near);
   // In an invalid mesh points may drive each other out without end.
@@ -58,8 +58,7 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
 /// Finds a place for the points that were hidden in what has been replaced, and for vertices that are gone, and
 /// certifies.
 template <class Path>
-void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is,
-                                            Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair) {
   lost_ = lost_ || !replaced.sound;
   if (lost_) return;  // Everything will be built anew.
   std::vector<Id> orphans;
@@ -72,7 +71,9 @@ void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without
       if (!mesh_.contains(id)) orphans.push_back(id);
     });
     for (Slot part = 0; part < 5; ++part) repair.certify(stride * t + part);
+    touched_.push_back(t);
   }
+  touched_.insert(touched_.end(), replaced.created.begin(), replaced.created.end());
   prove(replaced.created, is, repair);
   near_ = replaced.created.front();
   for (const Id id : orphans) {
@@ -101,17 +102,20 @@ std::uint32_t SpatialTriangulationRule<Path>::home_of(Id id, const std::vector<s
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::hide(Id id, std::uint32_t t, const Predicates& is, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::hide(Id id, std::uint32_t t, const Predicates& is, Pen& repair) {
   hidden_.put(id, t);
   if constexpr (weighted) {
     if (hidden_kind_.size() <= id) hidden_kind_.resize(id + std::size_t{1}, none);
     hidden_kind_[id] = hidden_kind(id, is);
     for (Slot part = 5; part < 10; ++part) repair.certify(stride * id + part);
+  } else {
+    if (same_as_.size() <= id) same_as_.resize(id + std::size_t{1}, nobody);
+    same_as_[id] = companion(id, t, is);
   }
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::reveal(Id id, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::reveal(Id id, Pen& repair) {
   hidden_.remove(id);
   if constexpr (weighted) {
     for (Slot part = 5; part < 10; ++part) repair.certify(stride * id + part);
@@ -121,7 +125,7 @@ void SpatialTriangulationRule<Path>::reveal(Id id, Repair<Path>& repair) {
 /// Finds out by which certificates these tetrahedra and their facets are proved, and marks their slots.
 template <class Path>
 void SpatialTriangulationRule<Path>::prove(const std::vector<std::uint32_t>& tetrahedra, const Predicates& is,
-                                           Repair<Path>& repair) {
+                                           Pen& repair) {
   kind_.resize(5 * std::size_t{mesh_.end_tetrahedron()}, none);
   for (const std::uint32_t t : tetrahedra) {
     repair.certify(stride * t + 4);
@@ -136,7 +140,7 @@ void SpatialTriangulationRule<Path>::prove(const std::vector<std::uint32_t>& tet
 
 /// The same for a facet, from both sides.
 template <class Path>
-void SpatialTriangulationRule<Path>::prove_facet(Facet f, const Predicates& is, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::prove_facet(Facet f, const Predicates& is, Pen& repair) {
   if (at_hull(f) && hull_.in_outline(mesh_, f)) hull_.find_edge(mesh_, f, is);
   for (const Facet side : {f, mesh_.twin(f)}) {
     kind_[5 * (side / 4) + side % 4] = facet_kind(side, is);
@@ -155,14 +159,15 @@ std::uint8_t SpatialTriangulationRule<Path>::sphere_kind(const TetrahedronMesh::
   return none;
 }
 
-/// Whether a point moves with a corner of a tetrahedron, one of a greater id, which the perturbation leaves lower. Then
-/// it is hidden as long as that is a vertex.
+/// The corner of a tetrahedron that a point moves with, one of a greater id, which the perturbation leaves lower;
+/// nobody if there is none. The point is hidden as long as that is a vertex.
 template <class Path>
-bool SpatialTriangulationRule<Path>::moves_along(Id id, std::uint32_t t, const Predicates& is) const {
+Id SpatialTriangulationRule<Path>::companion(Id id, std::uint32_t t, const Predicates& is) const {
   const TetrahedronMesh::Corners corners = mesh_.corners(t);
-  return std::any_of(corners.begin(), corners.end(), [&](Id c) {
+  const auto found = std::find_if(corners.begin(), corners.end(), [&](Id c) {
     return c != infinite && id < c && (is.x[c] == is.x[id] || (!weighted && is.same(c, id)));
   });
+  return found == corners.end() ? nobody : *found;
 }
 
 template <class Path>
@@ -196,26 +201,31 @@ bool SpatialTriangulationRule<Path>::holds(Facet f, const Predicates& is) const 
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::insert(Id id, Repair<Path>& repair) {
-  if (flat()) return rebuild(nobody, repair);
-  const Predicates is{repair.elements(), repair.now()};
-  begin();
-  place(id, near_, is, repair);
-  if (!sound()) rebuild(nobody, repair);
+void SpatialTriangulationRule<Path>::insert(Id id, Pen& repair) {
+  if (flat()) {
+    rebuild(nobody, repair);
+  } else {
+    const Predicates is{repair.elements(), repair.now()};
+    begin();
+    place(id, near_, is, repair);
+    if (!sound()) rebuild(nobody, repair);
+  }
+  report_touched(repair);
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::remove(Id id, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::remove(Id id, Pen& repair) {
   if (hidden_.contains(id)) return reveal(id, repair);
   if (flat()) return;
   const Predicates is{repair.elements(), repair.now()};
   begin();
   if (!build_around(mesh_.star(id), id, is, repair) || !sound()) rebuild(id, repair);
+  report_touched(repair);
 }
 
 /// A motion that leaves the tetrahedra around the vertex as they are: a bounce, say, or a small jump.
 template <class Path>
-bool SpatialTriangulationRule<Path>::keeps(Id id, const Path& next, Repair<Path>& repair) {
+bool SpatialTriangulationRule<Path>::keeps(Id id, const Path& next, Pen& repair) {
   if (flat() || hidden_.contains(id)) return false;
   const Predicates is{repair.elements(), repair.now(), id, &next};
   for (const std::uint32_t t : mesh_.star(id)) {
@@ -230,22 +240,39 @@ bool SpatialTriangulationRule<Path>::keeps(Id id, const Path& next, Repair<Path>
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::change(Id id, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::change(Id id, Pen& repair) {
   const Predicates is{repair.elements(), repair.now()};
   begin();
-  prove(mesh_.star(id), is, repair);
+  touched_ = mesh_.star(id);
+  prove(touched_, is, repair);
+  for (const Id other : neighbours(id)) {
+    if (other == infinite) continue;
+    const SpatialEdges::Number edge = edges_.between(id, other);
+    repair.report(EdgeChange{EdgeChange::What::moved, edge, edges_.ends(edge)});
+  }
   if (!sound()) rebuild(nobody, repair);
+  report_touched(repair);
+}
+
+/// Numbers the edges of what has changed, and tells.
+template <class Path>
+void SpatialTriangulationRule<Path>::report_touched(Pen& repair) {
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  edges_.update(mesh_, touched_, [&repair](const EdgeChange& change) { repair.report(change); });
+  for (const std::uint32_t t : touched_) repair.report(TetrahedronChange{t});
+  touched_.clear();
 }
 
 /// Updates what HullFacings stores: more of it may have changed at this time. False if the hull does not go round once.
 template <class Path>
-bool SpatialTriangulationRule<Path>::look_round(const Predicates& is, Repair<Path>& repair) {
+bool SpatialTriangulationRule<Path>::look_round(const Predicates& is, Pen& repair) {
   prove(mesh_.star(infinite), is, repair);
   return hull_.goes_round_once(mesh_);
 }
 
 template <class Path>
-void SpatialTriangulationRule<Path>::rebuild(Id without, Repair<Path>& repair) {
+void SpatialTriangulationRule<Path>::rebuild(Id without, Pen& repair) {
   const std::uint32_t before = mesh_.end_tetrahedron();
   rebuilds_ += before != 0;
   mesh_.clear();
@@ -279,6 +306,7 @@ void SpatialTriangulationRule<Path>::rebuild(Id without, Repair<Path>& repair) {
   }
   for (std::uint32_t t = 0; t < std::max(before, mesh_.end_tetrahedron()); ++t) {
     for (Slot part = 0; part < 5; ++part) repair.certify(stride * t + part);
+    touched_.push_back(t);
   }
   if constexpr (weighted) {
     for (Id id = 0; id < hidden_kind_.size(); ++id) {

@@ -62,6 +62,8 @@ class TetrahedronMesh {
   /// A tetrahedron with this corner. Precondition: contains(vertex).
   std::uint32_t at(Id vertex) const { return vertex == infinite ? at_infinity_ : at_[vertex]; }
 
+  /// Vertices but the infinite one are below this.
+  Id end_vertex() const { return static_cast<Id>(at_.size()); }
   /// Numbers of tetrahedra are below this; not all of them need be in_use().
   std::uint32_t end_tetrahedron() const { return static_cast<std::uint32_t>(twin_.size() / 4); }
   bool in_use(std::uint32_t t) const { return twin_[4 * std::size_t{t}] != none; }

@@ -59,7 +59,7 @@ struct NeighboursChange {
 /// between them may have the length 0. Points that stay in one place share a cell. While all points stay on one line
 /// nothing is known (DelaunayRule::flat).
 template <class Path, class Delaunay = DelaunayRule<Path>>
-class VoronoiCellsRule : public StandsOn<Delaunay, TriangleChange> {
+class VoronoiCellsRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
  public:
   static constexpr const char* name = "VoronoiCells";
   using Element = Path;

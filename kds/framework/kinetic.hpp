@@ -8,8 +8,10 @@
 #include "kds/framework/kinetic_rule.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <iterator>
@@ -56,45 +58,11 @@ struct NoListener {
 ///
 /// Cost of an event, beyond the rule's own: a pop, and for each certificate it marks a failure time and a push.
 template <class Rule, class Listener = NoListener, EventQueue Queue = DefaultEventQueue, class Solver = CertifiedSolver>
-class Kinetic final : public KineticOf<Rule>,
-                      private MovingSet<typename Rule::Element>::Observer,
-                      private detail::Follower {
+class Kinetic final : public KineticOf<Rule>, private MovingSet<typename Rule::Element>::Observer {
   using Standing = detail::Standing<Rule>;
   using Choice = typename detail::CertificateOf<Rule>::type;
   static constexpr bool is_outer = OuterRule<Rule>;
-  static_assert(detail::NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
-  static_assert(detail::HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
-  static_assert(detail::CertificateOf<Rule>::checked);
-  static_assert(detail::Certifies<Rule>,
-                "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
-                "std::optional or std::variant of certificates");
-  static_assert(detail::NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
-  static_assert(
-      detail::Repairs<Rule>,
-      "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing, or takes its argument by value or of another "
-      "type: RepairOf<Rule>& is right");
-  static_assert(
-      is_outer || (detail::Inserts<Rule> && detail::Removes<Rule>),
-      "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing, or take another "
-      "argument than RepairOf<Rule>&");
-  static_assert(!is_outer || ReportsChanges<typename Standing::Inner>,
-                "kinetic rule: the rule that it stands on has no `Change`, and so tells nothing");
-  static_assert(!is_outer || !ReportsChanges<typename Standing::Inner> || detail::HearsWhatIsReported<Rule>,
-                "kinetic rule: the rule that it stands on does not report the `Heard` that StandsOn names");
-  static_assert(!is_outer || detail::Follows<Rule>,
-                "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing");
-  static_assert(!ReportsChanges<Rule> || detail::TellsItsState<Rule>,
-                "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
-  static_assert(TakesUpMotions<Rule> || !detail::NamesChange<Rule>,
-                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
-  static_assert(TakesUpMotions<Rule> || !detail::NamesKeeps<Rule>,
-                "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
-  static_assert(ChoosesMotions<Rule> || !detail::NamesKeeps<Rule>,
-                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
-  static_assert(BuildsAtOnce<Rule> || !detail::NamesBuild<Rule>,
-                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
-  static_assert(AuditsItself<Rule> || !detail::NamesAudit<Rule>,
-                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
+  static_assert(detail::RightRule<Rule>::checked);
   static_assert(FailureTimeSolver<Solver>, "Kinetic: the solver is no FailureTimeSolver");
 
  public:
@@ -106,31 +74,26 @@ class Kinetic final : public KineticOf<Rule>,
       : KineticOf<Rule>(elements, std::move(rule)), listener_(std::move(listener)), backwards_(elements.backwards()) {
     build(now);
   }
-  /// For a rule that stands on another (StandsOn): takes up the state of a structure `inner` of that, whose events up
-  /// to `now` are processed first, and shares its elements. `inner` must outlive it.
-  Kinetic(typename Standing::Structure& inner, double now, Rule rule = {}, Listener listener = {})
-      : Kinetic(inner.elements_, inner, now, std::move(rule), std::move(listener)) {}
+  /// For a rule that stands on others (StandsOn): takes up the states of structures of these, whose events up to `now`
+  /// are processed first, and shares the elements of the first. `inners` is a structure if there is one, {a, b, c} if
+  /// there are several; they must outlive it.
+  Kinetic(typename Standing::Structures inners, double now, Rule rule = {}, Listener listener = {}) requires is_outer
+      : Kinetic(first_of(inners), inners, now, std::move(rule), std::move(listener)) {}
   /// The same with elements of its own, of another type perhaps.
-  Kinetic(MovingSet<Element>& elements, typename Standing::Structure& inner, double now, Rule rule = {},
-          Listener listener = {})
-      : KineticOf<Rule>(elements, std::move(rule)),
-        listener_(std::move(listener)),
-        backwards_(elements.backwards()),
-        inner_(&inner) {
-    if constexpr (is_outer) {
-      inner.elements_.process_due(now);
-      rule_.inner_ = &inner.rule();
-      build(now);
-      inner.followers_.push_back(this);
-      ++told().followers_;
-    }
+  Kinetic(MovingSet<Element>& elements, typename Standing::Structures inners, double now, Rule rule = {},
+          Listener listener = {}) requires is_outer : KineticOf<Rule>(elements, std::move(rule)),
+                                                      listener_(std::move(listener)),
+                                                      backwards_(elements.backwards()) {
+    stand_on(inners, now);
+    build(now);
+    follow_from_now_on();
   }
   ~Kinetic() {
     elements_.detach(*this);
-    if constexpr (is_outer) {
-      std::erase(inner_->followers_, static_cast<detail::Follower*>(this));
-      --told().followers_;
-    }
+    detail::for_each_place<Rule>([&](auto place) {
+      std::erase(inner_at(place).followers_, static_cast<detail::Follower*>(this));
+      --told_at(place).followers_;
+    });
   }
 
   Listener& listener() { return listener_; }
@@ -147,9 +110,7 @@ class Kinetic final : public KineticOf<Rule>,
   template <class F>
   void edit(F&& f, double now) {
     elements_.process_due(now);
-    begin(now);
-    f(rule_, repair_);
-    finish(false);
+    alone(now, [&] { f(rule_, repair_); });
   }
 
   /// See KineticStructure. Cost: a failure time for each certificate that the change concerns.
@@ -160,12 +121,12 @@ class Kinetic final : public KineticOf<Rule>,
   /// std::logic_error if the elements have not been turned round.
   void turn_round(double now, double horizon) requires Reversible<Element> {
     backwards_ = !backwards_;
-    begin(now);
-    schedule_.set_horizon(horizon);
-    for (Slot slot = 0; slot < held_.size(); ++slot) {
-      if (held_[slot]) certify(slot, false);
-    }
-    finish(false);
+    alone(now, [&] {
+      schedule_.set_horizon(horizon);
+      for (Slot slot = 0; slot < held_.size(); ++slot) {
+        if (held_[slot]) certify(slot, false);
+      }
+    });
   }
 
   /// Checks every certificate and failure time with exact signs, and calls the rule's own audit(). Throws AuditFailure.
@@ -188,28 +149,64 @@ class Kinetic final : public KineticOf<Rule>,
   void removing(Id id, double now) override;
   void changing(Id id, const Element& next, double now) override;
   void changed(Id id, double now) override;
-  /// Throws if the rule is being called, or the structure is invalid since the rule has thrown.
+  /// Throws if an event or edit is on its way, or the structure is invalid since a rule has thrown.
   void require_ready() const;
+  void require_idle() const;
 
   // How changes reach structures that stand on this one: kinetic_standing.hpp.
+  void stand_on(typename Standing::Structures& inners, double now);
   void build(double now);
-  void tell_followers(bool in_event);
+  void follow_from_now_on();
+  void tell_followers(detail::Wave& wave);
   void call_followers_listeners();
-  void follow(double now, bool in_event) override;
+  void follow(double now, bool in_event, detail::Wave& wave) override;
+  void forget_reports() override;
   void listen() override;
-  /// What the structure that it stands on reports to it.
-  auto& told() const requires is_outer {
-    return static_cast<detail::Reports<typename Standing::Change>&>(inner_->repair_);
-  }
+  bool untold() const override;
+  void require_nothing_before(double now) const;
   void require_inner_first(double time) const;
+  static MovingSet<Element>& first_of(const typename Standing::Structures& inners) requires is_outer {
+    return std::get<0>(inners).elements_;
+  }
+  // What stands at a place of the rule, what it reports to this one, and how often it has.
+  template <std::size_t I>
+  auto& inner_at(From<I> /*place*/) const {
+    return *std::get<I>(inners_);
+  }
+  template <std::size_t I>
+  auto& told_at(From<I> place) const {
+    return static_cast<detail::Reports<typename Rule::template HeardAt<I>>&>(inner_at(place).repair_);
+  }
+  template <std::size_t I>
+  std::uint64_t& followed_at(From<I> /*place*/) {
+    return followed_reports_[I];
+  }
+  template <std::size_t I>
+  std::uint64_t followed_at(From<I> /*place*/) const {
+    return followed_reports_[I];
+  }
+  template <class Place>
+  static constexpr bool moves_at(Place /*place*/) {
+    return detail::TypesAt<Rule, Place>::moves;
+  }
 
   // Each call of a function of the rule stands between these two: marked slots are certified when it is over.
   void begin(double now) {
-    require_ready();
-    busy_ = true;
+    require_idle();
+    this->state_ = State::working;
     repair_.now_ = last_ = now;
   }
-  void finish(bool in_event);
+  void finish(bool in_event, detail::Wave& wave);
+  /// A call that is not one of an event or of an edit of elements.
+  template <class F>
+  void alone(double now, F&& f) {
+    require_ready();
+    detail::Wave::Passage edit(this->wave());
+    begin(now);
+    f();
+    finish(false, this->wave());
+    edit.end(now, false);
+  }
   void count_repair(Slot slot, double time);
   void count_touched() {
     measures_.touched += repair_.marked_.size();
@@ -241,9 +238,13 @@ class Kinetic final : public KineticOf<Rule>,
   double soonest_sample(Slot slot) const;
   void sample_again(Slot slot, double time);
 
+  [[noreturn]] static void fail_busy() {
+    fail_use("its rule is at work, or has thrown: nothing can be edited from within it, and nothing after that");
+  }
   [[noreturn]] static void fail_use(const std::string& what) { throw std::logic_error(Rule::name + (": " + what)); }
 
   using Mark = typename Repair<Element>::Mark;
+  using State = detail::Follower::State;
   using KineticOf<Rule>::elements_;
   using KineticOf<Rule>::rule_;
   using KineticOf<Rule>::repair_;
@@ -254,20 +255,20 @@ class Kinetic final : public KineticOf<Rule>,
   Measures measures_;
   double last_ = -never;            ///< of the last change
   const Choice* failed_ = nullptr;  ///< the certificate that failed in the event that is processed
-  bool busy_ = false;
   bool backwards_ = false;
   bool keeps_ = false;  ///< whether the rule takes up a new motion without letting the element go
   double repaired_at_ = -never;
-  std::uint64_t repairs_ = 0;  ///< at that time, since the last edit
-  typename Standing::Structure* inner_ = nullptr;
-  std::uint64_t followed_reports_ = 0;  ///< of the structure that it stands on
-  std::vector<KineticEvent> untold_;    ///< events that were followed, of which the listener has not heard
+  std::uint64_t repairs_ = 0;             ///< at that time, since the last edit
+  typename Standing::Pointers inners_{};  ///< what it stands on
+  std::array<std::uint64_t, Standing::places> followed_reports_{};
+  std::vector<KineticEvent> untold_;  ///< events that were followed, of which the listener has not heard
 };
 
 // ---------------------------------------------------------------------------------------------------------------
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process() {
+  require_ready();
   const auto [time, slot] = schedule_.next();
   const Choice certificate = rule_.certificate(slot, elements_);
   KineticEvent event{time, slot, Effect::internal};
@@ -277,12 +278,14 @@ void Kinetic<Rule, Listener, Queue, Solver>::process() {
   } else {
     require_inner_first(time);
     count_repair(slot, time);
+    detail::Wave::Passage passage(this->wave());
     begin(time);
     failed_ = &certificate;
     event.effect = rule_.repair(slot, repair_);
     repair_.certify(slot);
     count_touched();
-    finish(true);
+    finish(true, this->wave());
+    passage.end(time, true);
   }
   ++measures_.events;
   measures_.external += event.effect == Effect::external;
@@ -305,7 +308,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::count_repair(Slot slot, double time
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
-void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
+void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event, detail::Wave& wave) {
   if (!repair_.marks_.empty() && held_.size() < repair_.marks_.size()) {
     held_.resize(repair_.marks_.size(), 0);
     schedule_.resize(repair_.marks_.size());
@@ -322,9 +325,10 @@ void Kinetic<Rule, Listener, Queue, Solver>::finish(bool in_event) {
   repair_.marked_.clear();
   if (!in_event) repairs_ = 0;
   failed_ = nullptr;
-  tell_followers(in_event);
   measures_.most_held = std::max(measures_.most_held, measures_.held);
-  busy_ = false;
+  wave.called(*this);
+  tell_followers(wave);
+  this->state_ = State::done;
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
@@ -372,12 +376,12 @@ bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, const Choice& cho
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
-  begin(now);
-  schedule_.set_horizon(horizon);
-  for (Slot slot = 0; slot < held_.size(); ++slot) {
-    if (held_[slot] && schedule_.concerned(slot)) certify(slot, false);
-  }
-  finish(false);
+  alone(now, [&] {
+    schedule_.set_horizon(horizon);
+    for (Slot slot = 0; slot < held_.size(); ++slot) {
+      if (held_[slot] && schedule_.concerned(slot)) certify(slot, false);
+    }
+  });
 }
 
 }  // namespace kds

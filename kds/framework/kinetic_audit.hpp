@@ -20,11 +20,11 @@ void Kinetic<Rule, Listener, Queue, Solver>::audit(double now) const {
   const auto fail = [](Slot slot, const char* what) {
     throw AuditFailure(Rule::name + (": slot " + std::to_string(slot)) + ": " + what);
   };
-  if constexpr (is_outer) {
-    if (this->inner_->reports_ != followed_reports_) {
-      throw AuditFailure(Rule::name + std::string(": the structure that it stands on has changed without it"));
+  detail::for_each_place<Rule>([&](auto place) {
+    if (inner_at(place).reports_ != followed_at(place)) {
+      throw AuditFailure(Rule::name + std::string(": a structure that it stands on has changed without it"));
     }
-  }
+  });
   for (Slot slot = 0; slot < held_.size(); ++slot) {
     if (!held_[slot]) {
       if (schedule_.contains(slot)) fail(slot, "an event without certificate");

@@ -17,16 +17,18 @@ namespace kds {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
+  this->wave().reach(*this, now);
   begin(now);
   if constexpr (detail::Inserts<Rule>) rule_.insert(id, repair_);
-  finish(false);
+  finish(false, this->wave());
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::removing(Id id, double now) {
+  this->wave().reach(*this, now);
   begin(now);
   if constexpr (detail::Removes<Rule>) rule_.remove(id, repair_);
-  finish(false);
+  finish(false, this->wave());
 }
 
 /// The change is one call of the rule in two parts: it is finished in changed(). A rule that stands on another one is
@@ -44,6 +46,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::changing(Id id, const Element& next
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double now) {
   if constexpr (is_outer) {
+    this->wave().reach(*this, now);
     begin(now);
     if constexpr (TakesUpMotions<Rule>) {
       rule_.change(id, repair_);
@@ -57,30 +60,36 @@ void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double now) {
     }
     if (!keeps_) rule_.insert(id, repair_);
   }
-  finish(false);
+  finish(false, this->wave());
 }
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::require_ready() const {
-  if (busy_)
-    fail_use("its rule is at work, or has thrown: nothing can be edited from within it, and nothing after that");
-  if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
-  if constexpr (is_outer) {
-    if (inner_->reports_ != followed_reports_) fail_use("the structure that it stands on has changed without it");
-  }
+  if (this->state_ != State::ready) fail_busy();
+  require_idle();
 }
 
-/// The structure that it stands on first, and in the end those that stand on it: they may have other sets of elements.
+template <class Rule, class Listener, EventQueue Queue, class Solver>
+void Kinetic<Rule, Listener, Queue, Solver>::require_idle() const {
+  if (this->state_ == State::working) fail_busy();
+  if (elements_.backwards() != backwards_) fail_use("its elements have been turned round without it");
+  detail::for_each_place<Rule>([&](auto place) {
+    if (inner_at(place).reports_ != followed_at(place))
+      fail_use("a structure that it stands on has changed without it");
+  });
+}
+
+/// The structures that it stands on first, and in the end those that stand on it: they may have other sets of elements.
+/// An edit may reach each of these, so what is due in them, and in what they stand on, is processed before.
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process_due(double now) {
-  if constexpr (Standing::on_motions) {
-    if (inner_->next_time() <= now) inner_->elements_.process_due(now);
-  }
+  detail::for_each_place<Rule>([&](auto place) {
+    auto& inner = inner_at(place);
+    if (moves_at(place) && inner.next_time() <= now) inner.process_due(now);
+  });
   process_own_due(now);
   if constexpr (ReportsChanges<Rule>) {
-    for (std::size_t i = 0; i < this->followers_.size(); ++i) {
-      if (this->followers_[i]->next_time() <= now) this->followers_[i]->process_due(now);
-    }
+    for (std::size_t i = 0; i < this->followers_.size(); ++i) this->followers_[i]->process_due(now);
   }
 }
 

@@ -11,9 +11,11 @@
 #include "kds/member_named.hpp"
 
 #include <concepts>
+#include <cstddef>
 #include <iterator>
 #include <span>
 #include <type_traits>
+#include <utility>
 
 namespace kds {
 
@@ -50,15 +52,39 @@ template <class R>
 concept Removes = requires(R& rule, Id id, RepairOf<R>& repair) {
   rule.remove(id, repair);
 };
-template <class R>
-concept HearsWhatIsReported = std::derived_from<RepairOf<typename R::Inner>, Reports<typename R::Heard>>;
-template <class R>
-concept Follows = OuterRule<R> && ReportsChanges<typename R::Inner> &&
-    requires(R& rule, std::span<const typename R::Heard> changes, RepairOf<R>& repair) {
-  { rule.follow(changes, repair) } -> std::same_as<Effect>;
+template <class R, std::size_t I>
+concept IsTold = ReportsChanges<typename R::template InnerAt<I>>;
+template <class R, std::size_t I>
+concept HearsWhatIsReported =
+    std::derived_from<RepairOf<typename R::template InnerAt<I>>, Reports<typename R::template HeardAt<I>>>;
+template <class R, std::size_t I>
+concept FollowsAt = requires(R& rule, std::span<const typename R::template HeardAt<I>> changes, RepairOf<R>& repair) {
+  { rule.follow(From<I>(), changes, repair) } -> std::same_as<Effect>;
 };
 template <class R>
-concept TakesElements = Follows<R> || (Inserts<R> && Removes<R>);
+concept FollowsOne = requires(R& rule, std::span<const typename R::Heard> changes, RepairOf<R>& repair) {
+  { rule.follow(changes, repair) } -> std::same_as<Effect>;
+};
+
+/// Whether all inner rules of R report something; report what it is to hear; and R follows each.
+template <class R, class Places = std::make_index_sequence<Standing<R>::places>>
+struct OfAllPlaces;
+template <class R, std::size_t... I>
+struct OfAllPlaces<R, std::index_sequence<I...>> {
+  static constexpr bool told = (IsTold<R, I> && ...);
+  static constexpr bool hears = (HearsWhatIsReported<R, I> && ...);
+  static constexpr bool follows = (FollowsAt<R, I> && ...);
+};
+template <class R>
+struct OfAllPlaces<R, std::index_sequence<0>> {
+  static constexpr bool told = IsTold<R, 0>;
+  static constexpr bool hears = HearsWhatIsReported<R, 0>;
+  static constexpr bool follows = FollowsOne<R>;
+};
+template <class R>
+concept Follows = OuterRule<R> && OfAllPlaces<R>::told && OfAllPlaces<R>::follows;
+template <class R>
+concept TakesElements = Follows<R> ||(Inserts<R>&& Removes<R>);
 template <class R>
 concept TellsItsState = requires(const R& rule) {
   { rule.changes_from_nothing() } -> std::same_as<typename ChangeOf<R>::Lists>;
@@ -141,6 +167,48 @@ KDS_MEMBER_NAMED(NamesChange, change);
 KDS_MEMBER_NAMED(NamesKeeps, keeps);
 KDS_MEMBER_NAMED(NamesBuild, build);
 KDS_MEMBER_NAMED(NamesAudit, audit);
+
+/// To be named wherever a structure is made of a rule: compiles only for rules, and says what is wrong with a class
+/// that is none, or which part of a rule would never be called.
+template <class Rule>
+struct RightRule {
+  static_assert(NamesElement<Rule>, "kinetic rule: `using Element = ...;` must name what moves");
+  static_assert(HasName<Rule>, "kinetic rule: `static constexpr const char* name = ...;` is missing");
+  static_assert(CertificateOf<Rule>::checked);
+  static_assert(Certifies<Rule>,
+                "kinetic rule: `certificate(Slot, const MovingSet<Element>&) const` must give a certificate, or a "
+                "std::optional or std::variant of certificates");
+  static_assert(NamesMembers<Rule>, "kinetic rule: `members(Slot) const` must give a range of ids");
+  static_assert(
+      Repairs<Rule>,
+      "kinetic rule: `Effect repair(Slot, Repair<Element>&)` is missing, or takes its argument by value or of another "
+      "type: RepairOf<Rule>& is right");
+  static_assert(
+      OuterRule<Rule> || (Inserts<Rule> && Removes<Rule>),
+      "kinetic rule: `insert(Id, Repair<Element>&)` and `remove(Id, Repair<Element>&)` are missing, or take another "
+      "argument than RepairOf<Rule>&");
+  static_assert(!OuterRule<Rule> || OfAllPlaces<Rule>::told,
+                "kinetic rule: a rule that it stands on has no `Change`, and so tells nothing");
+  static_assert(!OuterRule<Rule> || !OfAllPlaces<Rule>::told || OfAllPlaces<Rule>::hears,
+                "kinetic rule: a rule that it stands on does not report the change that `Telling` names");
+  static_assert(
+      !OuterRule<Rule> || Follows<Rule>,
+      "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing (if it stands "
+      "on several rules, `Effect follow(From<I>, std::span<const Change>, Repair<Element>&)` for each)");
+  static_assert(!ReportsChanges<Rule> || TellsItsState<Rule>,
+                "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
+  static_assert(TakesUpMotions<Rule> || !NamesChange<Rule>,
+                "kinetic rule: `change` must be `void change(Id, Repair<Element>&)`");
+  static_assert(TakesUpMotions<Rule> || !NamesKeeps<Rule>,
+                "kinetic rule: `change(Id, Repair<Element>&)` is missing, which a rule with `keeps` must have");
+  static_assert(ChoosesMotions<Rule> || !NamesKeeps<Rule>,
+                "kinetic rule: `keeps` must be `bool keeps(Id, const Element& next, Repair<Element>&)`");
+  static_assert(BuildsAtOnce<Rule> || !NamesBuild<Rule>,
+                "kinetic rule: `build` must be `void build(Repair<Element>&)`");
+  static_assert(AuditsItself<Rule> || !NamesAudit<Rule>,
+                "kinetic rule: `audit` must be `void audit(const MovingSet<Element>&, double now) const`");
+  static constexpr bool checked = true;
+};
 
 }  // namespace detail
 

@@ -1,6 +1,7 @@
 // The moving elements that several structures share; the structures are told of each change.
 #pragma once
 
+#include "kds/framework/wave.hpp"
 #include "kds/member_named.hpp"
 #include "kds/motion.hpp"
 
@@ -19,6 +20,9 @@ namespace kds {
 
 /// Number of a moving element: a small integer chosen by the caller, or by MovingSet::add().
 using Id = std::uint32_t;
+
+template <class Rule>
+class KineticOf;
 
 /// No element.
 inline constexpr Id nobody = std::numeric_limits<Id>::max();
@@ -100,6 +104,7 @@ class MovingSet {
   using Element = E;
 
   /// A structure that is told of edits. For each edit: process_due(), then one of the others, which must not throw.
+  /// Structures that stand on others (StandsOn) take part after these, whether they are observers or not.
   class Observer {
    public:
     virtual void process_due(double now) = 0;                     ///< process what is due up to now, or throw
@@ -262,12 +267,17 @@ class MovingSet {
   }
 
  private:
+  template <class>
+  friend class KineticOf;
+
   template <class Name>
   void remove_named(const Name& name, double now) {
     require(name);
     process_due(now);
     const Id id = require(name);  // A listener of an event that was due may have removed it.
+    detail::Wave::Passage edit(wave_);
     for (Observer* observer : observers_) observer->removing(id, now);
+    edit.end(now, false);
     present_[id] = 0;
     ++generation_[id];
     if (std::exchange(listed_[id], 1) == 0) free_.push_back(id);
@@ -282,9 +292,11 @@ class MovingSet {
   }
 
   void replace(Id id, const Element& element, double now) {
+    detail::Wave::Passage edit(wave_);
     for (Observer* observer : observers_) observer->changing(id, element, now);
     elements_[id] = element;
     for (Observer* observer : observers_) observer->changed(id, now);
+    edit.end(now, false);
   }
 
   /// After process_due().
@@ -299,7 +311,9 @@ class MovingSet {
     elements_[id] = std::move(element);
     present_[id] = 1;
     ++size_;
+    detail::Wave::Passage edit(wave_);
     for (Observer* observer : observers_) observer->inserted(id, now);
+    edit.end(now, false);
   }
 
   void require_free(Id id) const {
@@ -330,6 +344,7 @@ class MovingSet {
   std::vector<std::uint8_t> listed_;       ///< whether an id is in free_
   std::size_t size_ = 0;
   std::vector<Observer*> observers_;
+  detail::Wave wave_;  ///< of edits of the set, and of events of the structures that have its elements
   std::function<Element(Id, double)> sampler_;
   double tick_ = 0;
   std::uint64_t samples_ = 0;

@@ -12,9 +12,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -23,18 +25,18 @@ namespace kds::testing {
 struct TrialOptions {
   std::uint64_t seed = 1;
   Kind kind = Kind::generic;
-  int steps = 20;            ///< each some time without edits, and an edit
-  std::size_t first = 8;     ///< elements at the beginning
-  std::size_t most = 16;     ///< elements
-  double window = never;     ///< of the simulator, in seconds
-  std::size_t one_in = 1;    ///< states after events of which one is checked; those after edits all are
-  bool backwards = true;     ///< in the end, run back in time and forward again, where elements can
+  int steps = 20;          ///< each some time without edits, and an edit
+  std::size_t first = 8;   ///< elements at the beginning
+  std::size_t most = 16;   ///< elements
+  double window = never;   ///< of the simulator, in seconds
+  std::size_t one_in = 1;  ///< states after events of which one is checked; those after edits all are
+  bool backwards = true;   ///< in the end, run back in time and forward again, where elements can
 };
 
 /// What a trial has found. A right structure has nothing wrong; events and states tell whether it was tried at all.
 struct Findings {
   std::vector<KineticEvent> events{};  ///< of all structures
-  std::uint64_t states = 0;  ///< that were checked
+  std::uint64_t states = 0;            ///< that were checked
   std::uint64_t wrong = 0;
   std::string first{};  ///< the first that was wrong, in words
 
@@ -48,7 +50,7 @@ struct NoRuleEdits {
 };
 
 /// Runs a structure made of `rule` on random elements through random edits, and checks it. If the rule stands on others
-/// (StandsOn), structures of these are made too, of rules that are default-constructed, on the same elements.
+/// (StandsOn), structures of these are made too, one of each rule, default-constructed, on the same elements.
 ///
 /// `make(random, kind, now)` gives an element that moves about its place at `now` (random_motions.hpp). `check(rule,
 /// elements, now)` compares the state with brute force, when all events of a time are over, and gives the number of
@@ -77,23 +79,70 @@ struct Recorder {
   }
 };
 
-/// A structure and those that it stands on, the lowest first.
-template <class Rule>
-struct Tower {
-  Kinetic<Rule, Recorder> top;
-
-  Tower(MovingSet<typename Rule::Element>& elements, double now, const Rule& rule, Recorder recorder)
-      : top(elements, now, rule, recorder) {}
-  auto structures() { return std::tie(top); }
+/// Adds to a list of rules, std::tuple<Rules...>, a rule and before it those that it stands on, each once.
+template <class List, class Rule>
+struct With;
+template <class List, class... Rules>
+struct WithAll {
+  using type = List;
 };
-template <OuterRule Rule>
-struct Tower<Rule> {
-  Tower<typename Rule::Inner> below;
-  Kinetic<Rule, Recorder> top;
+template <class List, class First, class... Others>
+struct WithAll<List, First, Others...> : WithAll<typename With<List, First>::type, Others...> {};
+template <class List, class Base>
+struct WithInners {
+  using type = List;
+};
+template <class List, class... Inners>
+struct WithInners<List, StandsOn<Inners...>> : WithAll<List, typename kds::detail::Told<Inners>::Rule...> {};
+template <class List, class Rule>
+struct BelowOf {
+  using type = List;
+};
+template <class List, OuterRule Rule>
+struct BelowOf<List, Rule> : WithInners<List, decltype(kds::detail::standing(std::declval<const Rule&>()))> {};
+template <class List, class Rule>
+struct Appended;
+template <class... Rules, class Rule>
+struct Appended<std::tuple<Rules...>, Rule> {
+  using type =
+      std::conditional_t<(std::is_same_v<Rules, Rule> || ...), std::tuple<Rules...>, std::tuple<Rules..., Rule>>;
+};
+template <class List, class Rule>
+struct With : Appended<typename BelowOf<List, Rule>::type, Rule> {};
 
-  Tower(MovingSet<typename Rule::Element>& elements, double now, const Rule& rule, Recorder recorder)
-      : below(elements, now, {}, recorder), top(below.top, now, rule, recorder) {}
-  auto structures() { return std::tuple_cat(below.structures(), std::tie(top)); }
+/// A structure made of a rule, and those that it stands on: one of each rule, however many stand on it.
+template <class Rule, class List = typename With<std::tuple<>, Rule>::type>
+class Tower;
+template <class Rule, class... Rules>
+class Tower<Rule, std::tuple<Rules...>> {
+ public:
+  Tower(MovingSet<typename Rule::Element>& elements, double now, const Rule& rule, Recorder recorder) {
+    (make<Rules>(elements, now, rule, recorder), ...);
+  }
+  Kinetic<Rule, Recorder>& top() { return of<Rule>(); }
+  auto structures() { return std::tie(of<Rules>()...); }
+
+ private:
+  template <class R>
+  Kinetic<R, Recorder>& of() {
+    return *std::get<std::optional<Kinetic<R, Recorder>>>(structures_);
+  }
+  template <class R>
+  void make(MovingSet<typename Rule::Element>& elements, double now, const Rule& rule, Recorder recorder) {
+    auto& structure = std::get<std::optional<Kinetic<R, Recorder>>>(structures_);
+    R own{};
+    if constexpr (std::is_same_v<R, Rule>) own = rule;
+    if constexpr (OuterRule<R>) {
+      const auto on = [&]<class... Inners>(const StandsOn<Inners...>*) {
+        return typename kds::detail::Standing<R>::Structures(of<typename kds::detail::Told<Inners>::Rule>()...);
+      };
+      structure.emplace(on(static_cast<const R*>(nullptr)), now, std::move(own), recorder);
+    } else {
+      structure.emplace(elements, now, std::move(own), recorder);
+    }
+  }
+
+  std::tuple<std::optional<Kinetic<Rules, Recorder>>...> structures_;
 };
 
 template <class Element>
@@ -133,8 +182,8 @@ class Trial {
       set_.insert(static_cast<Id>(2 * i), make_(random, options_.kind, start), start);
     }
     Tower<Rule> tower(set_, start, rule_, Recorder{&events_});
-    auto simulator = std::apply([&](auto&... structures) { return Simulator(start, structures...); },
-                                tower.structures());
+    auto simulator =
+        std::apply([&](auto&... structures) { return Simulator(start, structures...); }, tower.structures());
     if (options_.window < never) simulator.set_window(options_.window);
     look_at(tower, simulator);
     go_on(tower, simulator, 1, options_.steps / 2);
@@ -160,7 +209,7 @@ class Trial {
     for (int step = 0; step < steps; ++step) {
       advance(tower, simulator, simulator.now() + random_delay(random, options_.kind));
       edit_something(random, simulator.now());
-      edit_(tower.top, random, simulator.now());
+      edit_(tower.top(), random, simulator.now());
       look_at(tower, simulator);
     }
   }
@@ -181,7 +230,7 @@ class Trial {
     simulator.audit();
     if (simulator.next_time() <= simulator.now()) return;
     ++findings_.states;
-    const auto wrong = static_cast<std::uint64_t>(check_(tower.top.rule(), std::as_const(set_), simulator.now()));
+    const auto wrong = static_cast<std::uint64_t>(check_(tower.top().rule(), std::as_const(set_), simulator.now()));
     if (wrong != 0) found("the state at " + std::to_string(simulator.now()) + " is wrong");
     findings_.wrong += wrong - (wrong != 0);
   }

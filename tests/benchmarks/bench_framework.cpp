@@ -310,6 +310,7 @@ int main(int argc, char** argv) {
             [](Random& random) { return structures::GrowingEnd{random_path<1>(random)}; });
     measure_plane<1>(n, 0.25, rounds);
     measure_plane<2>(n, 0.25, rounds);
+    measure("Delaunay", 3, n, 0.25, rounds, structures::DelaunayRule<certificates::PlaneMotion<3>>{}, random_path<3>);
     measure_space<1>(n, 0.05, rounds);
     measure_space<2>(n, 0.05, rounds);
   }

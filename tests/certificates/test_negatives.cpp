@@ -3,6 +3,7 @@
 #include "certificates/distance_order.hpp"
 #include "certificates/empty_disc.hpp"
 #include "certificates/in_circle.hpp"
+#include "certificates/in_order.hpp"
 #include "certificates/in_region.hpp"
 #include "certificates/in_sphere.hpp"
 #include "certificates/order.hpp"
@@ -10,6 +11,7 @@
 #include "certificates/plane_motion.hpp"
 #include "certificates/space_orientation.hpp"
 #include "certificates/weighted_point.hpp"
+#include "certificates/within_limit.hpp"
 #include "tests/certificates/check_certificate.hpp"
 
 #include <catch2/catch.hpp>
@@ -90,6 +92,12 @@ TEST_CASE("certificates in the plane know their negatives", "[hooks]") {
   Random random(seed);
   const auto motions = some<Motion<2>>(3, [&] { return random_motion<2>(random); });
   CHECK(mistakes(of_all_orders<2>(motions, [](auto x) { return Order<2>{*x[0], *x[1]}; })) == 0);
+  CHECK(mistakes(of_all_orders<2>(motions, [](auto x) { return Ascending<Motion<2>>{*x[0], *x[1]}; })) == 0);
+  std::vector<WithinLimit<Motion<2>>> limits;
+  for (const double side : {1.0, -1.0}) {
+    limits.insert(limits.end(), {{motions[0], 0.5, side}, {motions[0], 0.25, side}, {motions[1], 0.5, side}});
+  }
+  CHECK(mistakes(limits) == 0);
   using Path = PlaneMotion<1>;
   const auto paths = some<Path>(5, [&] {
     return Path{{random_motion<1>(random).position, random_motion<1>(random).position}, random.between(-1, 1)};

@@ -83,7 +83,7 @@ int check_complex(const AlphaComplexRule<PlaneMotion<Degree>>& rule, const Movin
 
 /// What it knows of the edges, or of the triangles, by what it has been told alone.
 template <class Path, class Told>
-struct ToldRule : StandsOn<AlphaComplexRule<Path>, Told> {
+struct ToldRule : StandsOn<Telling<AlphaComplexRule<Path>, Told>> {
   static constexpr const char* name = "Told";
   static constexpr std::size_t corners = std::is_same_v<Told, EdgeChange> ? 2 : 3;
   std::vector<std::array<Id, corners>> known{};  ///< by number

@@ -3,10 +3,12 @@
 #include "structures/spanning_tree.hpp"
 #include "tests/structures/exact_plane.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/told_edges.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <map>
+#include <span>
 #include <vector>
 
 namespace test_spanning_tree {
@@ -55,7 +57,38 @@ int check_tree(const SpanningTreeRule<PlaneMotion<Degree>>& rule, const MovingSe
   return wrong;
 }
 
+/// The tree by what it tells.
+struct ToldRule : StandsOn<SpanningTreeRule<PlaneMotion<1>>>, Quiet<PlaneMotion<1>> {
+  static constexpr const char* name = "Told";
+  EdgesTold edges{};
+
+  Effect repair(Slot, Repair<PlaneMotion<1>>&) { return Effect::internal; }
+  Effect follow(std::span<const structures::EdgeChange> changes, Repair<PlaneMotion<1>>&) {
+    for (const auto& change : changes) edges.take(change);
+    return Effect::external;
+  }
+  template <class Archive>
+  void archive(Archive& archive) {
+    archive(edges);
+  }
+};
+
 }  // namespace
+
+TEST_CASE("a spanning tree tells which of its edges come and go", "[spanning_tree]") {
+  for (const Kind kind : all_kinds) {
+    const std::uint64_t seed = 605;
+    CAPTURE(static_cast<int>(kind), seed);
+    const auto check = [](const ToldRule& rule, const auto&, double) {
+      int wrong = rule.edges.ends.size() != rule.inner().edges().size();
+      for (const auto& [edge, ends] : rule.edges.ends) {
+        wrong += !rule.inner().contains(edge) || rule.inner().ids(edge) != ends;
+      }
+      return wrong;
+    };
+    CHECK(try_rule({seed, kind, 12, 6, 9}, ToldRule{}, random_plane_motion<1>, check).first == "");
+  }
+}
 
 TEMPLATE_TEST_CASE_SIG("the kinetic spanning tree is a shortest one, exactly", "[spanning_tree]",
                        ((int Degree), Degree), 1, 2) {
@@ -64,8 +97,8 @@ TEMPLATE_TEST_CASE_SIG("the kinetic spanning tree is a shortest one, exactly", "
     for (std::uint64_t seed = Degree == 1 ? 600 : 601; seed < (Degree == 1 ? 603u : 602u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
       const TrialOptions options{seed, kind, 6, 2 + 3 * (seed % 3), 9, seed % 2 == 0 ? never : 0.4, 16};
-      const Findings found = try_rule(options, SpanningTreeRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>,
-                                      check_tree<Degree>);
+      const Findings found =
+          try_rule(options, SpanningTreeRule<PlaneMotion<Degree>>{}, random_plane_motion<Degree>, check_tree<Degree>);
       CHECK(found.first == "");
       events += found.events.size();
     }
@@ -88,8 +121,8 @@ TEST_CASE("a spanning tree keeps to its measures", "[spanning_tree]") {
   CHECK(check_tree(tree.rule(), set, 1) == 0);
   CHECK(m.external > 10);
   CHECK(m.external < m.events / 2);
-  CHECK(m.most_held <= 3 * n);   // compact
-  CHECK(m.most_touched <= 6);    // responsive: an edge comes and one goes
+  CHECK(m.most_held <= 3 * n);  // compact
+  CHECK(m.most_touched <= 6);   // responsive: an edge comes and one goes
 }
 
 }  // namespace test_spanning_tree

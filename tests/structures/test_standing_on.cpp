@@ -150,7 +150,7 @@ struct TwoTopicsRule {
   }
 };
 template <class Told>
-struct OneTopicRule : StandsOn<TwoTopicsRule, Told> {
+struct OneTopicRule : StandsOn<Telling<TwoTopicsRule, Told>> {
   static constexpr const char* name = "OneTopic";
   int calls = 0, changes = 0;
 
@@ -318,7 +318,7 @@ TEST_CASE("a structure that misses what the inner one does says so", "[standing_
     Gap gap(list, 0);
     Simulator simulator(0, list);
     REQUIRE(gap.next_time() < never);
-    CHECK_THROWS_WITH(run(simulator), Catch::Contains("SmallestGap: the structure that it stands on has passed over"));
+    CHECK_THROWS_WITH(run(simulator), Catch::Contains("SmallestGap: what it stands on has passed over"));
   }
   SECTION("loaded alone") {
     Gap gap(list, 0);
@@ -327,8 +327,8 @@ TEST_CASE("a structure that misses what the inner one does says so", "[standing_
     const Snapshot before = save(alone, set);
     both.advance_to(3);
     restore(before, alone, set);
-    CHECK_THROWS_WITH(gap.audit(0), Catch::Contains("SmallestGap: the structure that it stands on has changed"));
-    CHECK_THROWS_WITH(set.remove(0, 0), Catch::Contains("SmallestGap: the structure that it stands on has changed"));
+    CHECK_THROWS_WITH(gap.audit(0), Catch::Contains("SmallestGap: a structure that it stands on has changed"));
+    CHECK_THROWS_WITH(set.remove(0, 0), Catch::Contains("SmallestGap: a structure that it stands on has changed"));
   }
 }
 

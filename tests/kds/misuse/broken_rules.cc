@@ -112,13 +112,27 @@ struct Deaf : StandsOn<Reports> {
   Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
   void follow(std::span<const int>, Repair<Value>&) {}
 };
-struct HearsOfOthers : StandsOn<Reports, float> {
+struct HearsOfOthers : StandsOn<Telling<Reports, float>> {
   static constexpr const char* name = "HearsOfOthers";
   std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
   std::vector<Id> members(Slot) const { return {}; }
   Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
   Effect follow(std::span<const float>, Repair<Value>&) { return Effect::internal; }
 };
+
+/// Follows one of the two that it stands on.
+struct HalfDeaf : StandsOn<Reports, Reports> {
+  static constexpr const char* name = "HalfDeaf";
+  std::optional<PolynomialCertificate<1>> certificate(Slot, const MovingSet<Value>&) const { return {}; }
+  std::vector<Id> members(Slot) const { return {}; }
+  Effect repair(Slot, Repair<Value>&) { return Effect::internal; }
+  Effect follow(From<1>, std::span<const int>, Repair<Value>&) { return Effect::internal; }
+};
+struct FollowsBoth : HalfDeaf {
+  using HalfDeaf::follow;
+  Effect follow(From<0>, std::span<const int>, Repair<Value>&) { return Effect::internal; }
+};
+static_assert(!KineticRule<HalfDeaf> && KineticRule<FollowsBoth>);
 
 template <class Rule>
 using With = Kinetic<Rule>;
@@ -133,7 +147,7 @@ constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<Wit
                                  sizeof(With<Certified<OfAnotherDegree>>),
                                  sizeof(With<RepairsACopy>),     sizeof(With<Silent>),
                                  sizeof(With<Deaf>),             sizeof(With<Reports>),
-                                 sizeof(With<HearsOfOthers>),
+                                 sizeof(With<HearsOfOthers>),    sizeof(With<HalfDeaf>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
 
 struct LateSolver : CertifiedSolver {
