@@ -71,6 +71,8 @@ class FreeRotation {
   /// Whether the body turns about a principal axis, up to what roundings may have made of its angular momentum: then
   /// its angular velocity stays as it is.
   bool steady() const { return steady_; }
+  /// That at the state's time, in the axes of the world, rad/s.
+  Eigen::Vector3d angular_velocity() const;
   /// The magnitude of the rate at which the angular velocity changes, rad/s^2. Precondition as of orientation().
   double acceleration(double t) const;
 
@@ -84,6 +86,8 @@ class FreeRotation {
   const RotationState& state_;
   double reach_;
   double rate_ = 1;                  ///< the unit of rates, a power of two, rad/s
+  Eigen::Vector3d own_momentum_;     ///< at the state's time, in principal axes
+  Eigen::Vector3d inverse_;          ///< of the moments
   Eigen::Vector3d inverse_moments_;  ///< in units in which momenta and rates are about 1
   bool steady_ = false;
   std::size_t terms_ = 0;

@@ -51,19 +51,18 @@ RotationPiece rotation_piece(const PrincipalInertia& inertia, const RotationStat
   constexpr double shorter = 0.875;  // of a span that was too long
   const RotationState here{state.momentum, free, t};
   FreeRotation rotation(inertia, here);
-  const Vector3d velocity = angular_velocity(inertia, here);
+  const Vector3d velocity = rotation.angular_velocity();
   const bool on_it = from.coeffs() == here.orientation.coeffs();
   const double turn = longest_turn / norm(velocity);
   if (rotation.steady() && (on_it || !(t + turn < never))) return {never, here.orientation, velocity};
   const auto span_for = [&](double acceleration) { return std::sqrt(8 * bulge / (spared * acceleration)); };
   const double span = std::min(span_for(rotation.acceleration(t)), turn);
   rotation.expand(span);
-  double end = std::min(t + span, rotation.reach());
-  for (;;) {
-    end = std::max(end, next_up(t));
+  double end = std::max(std::min(t + span, rotation.reach()), next_up(t));
+  while (inertia.symmetry < 0 && end > next_up(t)) {  // The acceleration of a top does not grow.
     const double greatest = std::max(rotation.acceleration(t + (end - t) / 2), rotation.acceleration(end));
-    if (inertia.symmetry >= 0 || end - t <= span_for(greatest) || end == next_up(t)) break;
-    end = t + shorter * (end - t);
+    if (end - t <= span_for(greatest)) break;
+    end = std::max(t + shorter * (end - t), next_up(t));
   }
   if (end == next_up(t) && turn < end - t) {
     throw std::runtime_error(
