@@ -13,8 +13,7 @@ struct HalfTurn {
   double cosine, sine, rate;
 };
 
-HalfTurn half_turn(const Spin& spin, double t) {
-  const Ball<DoubleDouble> rate = spin.rate();
+HalfTurn half_turn(const Spin& spin, const Ball<DoubleDouble>& rate, double t) {
   const Ball<DoubleDouble> angle = spin.angle(rate, t) * 0.5;
   if (angle.radius <= 0x1p-70 && std::abs(angle.middle.high) <= greatest_angle) {
     const auto a = rounded_sine_cosine(angle);
@@ -34,7 +33,13 @@ HalfTurn half_turn(const Spin& spin, double t) {
 
 Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, double t) {
   if (spin.still() || t == spin.start) return q;
-  const HalfTurn half = half_turn(spin, t);
+  return turned_orientation(q, spin, spin.rate(), t);
+}
+
+Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, const Ball<DoubleDouble>& rate,
+                                      double t) {
+  if (spin.still() || t == spin.start) return q;
+  const HalfTurn half = half_turn(spin, rate, t);
   const double w = half.cosine;
   const double factor = half.sine / half.rate;
   const double x = factor * spin.velocity[0];

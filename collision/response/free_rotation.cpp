@@ -80,7 +80,10 @@ double FreeRotation::size(std::size_t term) const {
 }
 
 void FreeRotation::expand(double wanted) {
-  if (in_closed_form()) return;
+  if (in_closed_form()) {
+    if (!steady_) top_spins_ = top_spins();
+    return;
+  }
   constexpr double left_out = 0x1p-60;
   constexpr double greatest = 0x1p200;  // of a coefficient, lest the next overflow: fewer terms, and a shorter reach
   const Vector3d& n = inverse_moments_;
@@ -116,17 +119,25 @@ void FreeRotation::expand(double wanted) {
   reach_ = state_.time + span / rate_;
 }
 
+FreeRotation::TopSpins FreeRotation::top_spins() const {
+  const int axis = inertia_.symmetry, across = (axis + 1) % 3;
+  Vector3d own = Vector3d::Zero();
+  own[axis] = -own_momentum_[axis] * (inverse_[axis] - inverse_[across]);
+  TopSpins top{spin_of(inverse_[across] * state_.momentum, state_.time), spin_of(own, state_.time), 0, 0};
+  top.precession_rate = top.precession.rate();
+  top.own_rate = top.own.rate();
+  return top;
+}
+
 Quaterniond FreeRotation::orientation(double t) const {
   if (steady_) {
     return certificates::turned_orientation(state_.orientation, spin_of(angular_velocity(), state_.time), t);
   }
   if (inertia_.symmetry >= 0) {
-    const int axis = inertia_.symmetry, across = (axis + 1) % 3;
-    Vector3d own = Vector3d::Zero();
-    own[axis] = -own_momentum_[axis] * (inverse_[axis] - inverse_[across]);
-    const Vector3d precession = inverse_[across] * state_.momentum;
-    const Quaterniond q = certificates::turned_orientation(state_.orientation, spin_of(precession, state_.time), t);
-    return certificates::turned_orientation(q.conjugate(), spin_of(own, state_.time), t).conjugate();
+    const TopSpins& top = top_spins_ ? *top_spins_ : top_spins();
+    using certificates::turned_orientation;
+    const Quaterniond q = turned_orientation(state_.orientation, top.precession, top.precession_rate, t);
+    return turned_orientation(q.conjugate(), top.own, top.own_rate, t).conjugate();
   }
   const double span = (t - state_.time) * rate_;
   Vector4d sum = quaternion_[terms_];
