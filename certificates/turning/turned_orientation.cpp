@@ -1,5 +1,7 @@
 #include "certificates/turning/turned_orientation.hpp"
 
+#include "kds/arithmetic/rounded_sine_cosine.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,10 +13,12 @@ struct HalfTurn {
   double cosine, sine, rate;
 };
 
-HalfTurn half_turn(const Spin& spin, double t) {
-  const Ball<DoubleDouble> rate = spin.rate();
-  const auto a = sine_cosine<Ball<DoubleDouble>>(spin.angle(rate, t) * 0.5);
-  if (a.cosine.radius <= 0x1p-70) return {a.cosine.middle.high, a.sine.middle.high, rate.middle.high};
+HalfTurn half_turn(const Spin& spin, const Ball<DoubleDouble>& rate, double t) {
+  const Ball<DoubleDouble> angle = spin.angle(rate, t) * 0.5;
+  if (angle.radius <= 0x1p-70 && std::abs(angle.middle.high) <= greatest_angle) {
+    const auto a = rounded_sine_cosine(angle);
+    return {a.cosine, a.sine, rate.middle.high};
+  }
   constexpr int bits = 100;  // where double-doubles do not do
   const Exact time = Exact(t) - Exact(spin.start);
   const Exact square = spin.squared_rate<Exact>();
@@ -29,7 +33,13 @@ HalfTurn half_turn(const Spin& spin, double t) {
 
 Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, double t) {
   if (spin.still() || t == spin.start) return q;
-  const HalfTurn half = half_turn(spin, t);
+  return turned_orientation(q, spin, spin.rate(), t);
+}
+
+Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, const Ball<DoubleDouble>& rate,
+                                      double t) {
+  if (spin.still() || t == spin.start) return q;
+  const HalfTurn half = half_turn(spin, rate, t);
   const double w = half.cosine;
   const double factor = half.sine / half.rate;
   const double x = factor * spin.velocity[0];

@@ -13,5 +13,8 @@ namespace kds::certificates {
 /// Error bound, with u = 2^-53: the sine and the cosine are rounded from 2^-70 (u), the sine is divided by the rate and
 /// multiplied by W (4 u in all), and a sum of four products makes 4 u: 8 u |q|, and less than that for the rest.
 Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, double t);
+/// The same where spin.rate() is known already.
+Eigen::Quaterniond turned_orientation(const Eigen::Quaterniond& q, const Spin& spin, const Ball<DoubleDouble>& rate,
+                                      double t);
 
 }  // namespace kds::certificates

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 namespace kds::collision {
 namespace {
@@ -27,6 +28,11 @@ int exponent_of(const Vector3d& v) {
   int exponent = 0;
   std::frexp(v.cwiseAbs().maxCoeff(), &exponent);
   return exponent;
+}
+
+/// x 2^exponent, rounded once.
+double scaled(double x, int exponent) {
+  return std::abs(exponent) < 1023 ? x * power_of_two(exponent) : std::ldexp(x, exponent);
 }
 
 Vector3d inverse_moments(const PrincipalInertia& inertia) {
@@ -51,14 +57,16 @@ Matrix3d inverse_inertia(const PrincipalInertia& inertia, const Quaterniond& ori
 }
 
 FreeRotation::FreeRotation(const PrincipalInertia& inertia, const RotationState& state)
-    : inertia_(inertia), state_(state) {
-  const Vector3d momentum = turned(state.orientation.conjugate(), state.momentum);
-  const Vector3d inverse = inverse_moments(inertia), rates = inverse.cwiseProduct(momentum);
-  const int of_momentum = exponent_of(momentum), of_rates = exponent_of(rates);
+    : inertia_(inertia),
+      state_(state),
+      own_momentum_(turned(state.orientation.conjugate(), state.momentum)),
+      inverse_(inverse_moments(inertia)) {
+  const Vector3d rates = inverse_.cwiseProduct(own_momentum_);
+  const int of_momentum = exponent_of(own_momentum_), of_rates = exponent_of(rates);
   rate_ = power_of_two(of_rates);
   for (int i = 0; i < 3; ++i) {
-    inverse_moments_[i] = std::ldexp(inverse[i], of_momentum - of_rates);
-    momentum_[0][i] = std::ldexp(momentum[i], -of_momentum);
+    inverse_moments_[i] = scaled(inverse_[i], of_momentum - of_rates);
+    momentum_[0][i] = scaled(own_momentum_[i], -of_momentum);
   }
   constexpr double roundings = 0x1p-46;
   const Vector3d unit_rates = inverse_moments_.cwiseProduct(momentum_[0]);
@@ -72,7 +80,10 @@ double FreeRotation::size(std::size_t term) const {
 }
 
 void FreeRotation::expand(double wanted) {
-  if (in_closed_form()) return;
+  if (in_closed_form()) {
+    if (!steady_) top_spins_ = top_spins();
+    return;
+  }
   constexpr double left_out = 0x1p-60;
   constexpr double greatest = 0x1p200;  // of a coefficient, lest the next overflow: fewer terms, and a shorter reach
   const Vector3d& n = inverse_moments_;
@@ -108,25 +119,34 @@ void FreeRotation::expand(double wanted) {
   reach_ = state_.time + span / rate_;
 }
 
+FreeRotation::TopSpins FreeRotation::top_spins() const {
+  const int axis = inertia_.symmetry, across = (axis + 1) % 3;
+  Vector3d own = Vector3d::Zero();
+  own[axis] = -own_momentum_[axis] * (inverse_[axis] - inverse_[across]);
+  TopSpins top{spin_of(inverse_[across] * state_.momentum, state_.time), spin_of(own, state_.time), 0, 0};
+  top.precession_rate = top.precession.rate();
+  top.own_rate = top.own.rate();
+  return top;
+}
+
 Quaterniond FreeRotation::orientation(double t) const {
   if (steady_) {
-    return certificates::turned_orientation(state_.orientation,
-                                            spin_of(angular_velocity(inertia_, state_), state_.time), t);
+    return certificates::turned_orientation(state_.orientation, spin_of(angular_velocity(), state_.time), t);
   }
   if (inertia_.symmetry >= 0) {
-    const int axis = inertia_.symmetry, across = (axis + 1) % 3;
-    const Vector3d momentum = turned(state_.orientation.conjugate(), state_.momentum);
-    Vector3d own = Vector3d::Zero();
-    const Vector3d inverse = inverse_moments(inertia_);
-    own[axis] = -momentum[axis] * (inverse[axis] - inverse[across]);
-    const Vector3d precession = inverse[across] * state_.momentum;
-    const Quaterniond q = certificates::turned_orientation(state_.orientation, spin_of(precession, state_.time), t);
-    return certificates::turned_orientation(q.conjugate(), spin_of(own, state_.time), t).conjugate();
+    const TopSpins& top = top_spins_ ? *top_spins_ : top_spins();
+    using certificates::turned_orientation;
+    const Quaterniond q = turned_orientation(state_.orientation, top.precession, top.precession_rate, t);
+    return turned_orientation(q.conjugate(), top.own, top.own_rate, t).conjugate();
   }
   const double span = (t - state_.time) * rate_;
   Vector4d sum = quaternion_[terms_];
   for (std::size_t m = terms_; m-- > 0;) sum = sum * span + quaternion_[m];
   return Quaterniond(sum);
+}
+
+Vector3d FreeRotation::angular_velocity() const {
+  return turned(state_.orientation, inverse_.cwiseProduct(own_momentum_));
 }
 
 double FreeRotation::acceleration(double t) const {

@@ -5,12 +5,16 @@
 #pragma once
 
 #include "collision/response/principal_inertia.hpp"
+#include "kds/arithmetic/ball.hpp"
+#include "kds/arithmetic/double_double.hpp"
+#include "kds/turning/spin.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace kds::collision {
 
@@ -60,7 +64,8 @@ class FreeRotation {
   FreeRotation(const PrincipalInertia& inertia, const RotationState& state);
 
   /// Expands the series of a body that is no top so far that it can be used for the next `span` s, or for less where it
-  /// converges too slowly: a part of a radian at least.
+  /// converges too slowly: a part of a radian at least. Of a top, keeps what all orientations need, to save that from
+  /// the second on.
   void expand(double span);
   /// The time up to which the orientation is known. Of tops, and of bodies that turn about a principal axis, that is
   /// `never`.
@@ -71,21 +76,33 @@ class FreeRotation {
   /// Whether the body turns about a principal axis, up to what roundings may have made of its angular momentum: then
   /// its angular velocity stays as it is.
   bool steady() const { return steady_; }
+  /// That at the state's time, in the axes of the world, rad/s.
+  Eigen::Vector3d angular_velocity() const;
   /// The magnitude of the rate at which the angular velocity changes, rad/s^2. Precondition as of orientation().
   double acceleration(double t) const;
 
  private:
   static constexpr std::size_t most_terms = 24;
 
+  /// How a symmetric top turns: about its angular momentum, and about its axis.
+  struct TopSpins {
+    Spin precession, own;
+    Ball<DoubleDouble> precession_rate, own_rate;
+  };
+
   bool in_closed_form() const { return steady_ || inertia_.symmetry >= 0; }
   double size(std::size_t term) const;
+  TopSpins top_spins() const;
 
   const PrincipalInertia& inertia_;
   const RotationState& state_;
   double reach_;
   double rate_ = 1;                  ///< the unit of rates, a power of two, rad/s
+  Eigen::Vector3d own_momentum_;     ///< at the state's time, in principal axes
+  Eigen::Vector3d inverse_;          ///< of the moments
   Eigen::Vector3d inverse_moments_;  ///< in units in which momenta and rates are about 1
   bool steady_ = false;
+  std::optional<TopSpins> top_spins_;
   std::size_t terms_ = 0;
   std::array<Eigen::Vector3d, most_terms + 1> momentum_;
   std::array<Eigen::Vector4d, most_terms + 1> quaternion_;  ///< as Eigen has it: x, y, z, w

@@ -6,6 +6,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <cstddef>
+
 namespace kds::collision {
 
 /// The angular velocity, in the axes of the world, that leads from one orientation to another in a span of time, the
@@ -38,5 +40,20 @@ inline constexpr double longest_turn = 1;
 /// that rotations of a radian do not add up like vectors; and it turns by longest_turn at most.
 RotationPiece rotation_piece(const PrincipalInertia& inertia, const RotationState& state, double t,
                              const Eigen::Quaterniond& free, const Eigen::Quaterniond& from, double bulge);
+
+/// The last of pieces one after the other.
+struct PiecesInARow {
+  RotationPiece last{};
+  double start;             ///< of the last, s
+  Eigen::Quaterniond from;  ///< the orientation in which it starts, of the principal axes
+  std::size_t count = 0;
+};
+
+/// The pieces from `start` on, up to the first that ends at t or later: those of rotation_piece(), bit for bit, where
+/// each starts in the orientation of the free rotation at which the one before ends, and the first in `from`. In less
+/// time than one by one. The state of a body that is no top becomes that at the start of the last; that of a top, at
+/// `start` or earlier, stays. Throws as rotation_piece().
+PiecesInARow pieces_until(double t, const PrincipalInertia& inertia, RotationState& state, double start,
+                          const Eigen::Quaterniond& from, double bulge);
 
 }  // namespace kds::collision

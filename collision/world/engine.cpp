@@ -192,7 +192,7 @@ bool Engine<Motion>::process(Task task) {
       start_pieces();
       return true;
     case Task::turn_on:
-      turn_on();
+      if constexpr (turns<Motion>) turn_on();
       return false;  // The report ends the step.
     case Task::meet_boxes:
       pairs_.process_boxes();
@@ -238,6 +238,7 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       continue;
     }
     if (!resting_.solved()) resting_.solve();
+    if constexpr (turns<Motion>) look_at_tested();
     if (!pairs_.tested()) pairs_.test(part);
     if (!pairs_.tested()) {
       if (late()) return true;
@@ -332,6 +333,11 @@ template <class Motion>
 void Engine<Motion>::advance_to(double t) {
   require_idle("World::advance_to");
   require_ahead("World::advance_to", t, callers_now_);
+  struct Unheard {
+    Tumbling<Motion>& of;
+    ~Unheard() { of.set_unheard_until(-never); }
+  } unheard{tumbling_};
+  if (listener_ == &silent_) unheard.of.set_unheard_until(t);
   while (step(t)) {
   }
 }
@@ -363,7 +369,10 @@ void Engine<Motion>::start_pieces() {
   auto pieces = scripts_.take_next();
   std::vector<char> jumps;
   for (auto& [slot, motion] : pieces) {
-    if (tumbling_.has(slot)) motion = tumbling_.take_up(slot, motion, clock_.now);
+    if constexpr (turns<Motion>) {
+      if (tumbling_.is_alone(slot)) look_at(slot);
+      if (tumbling_.has(slot)) motion = tumbling_.take_up(slot, motion, clock_.now);
+    }
     jumps.push_back(bodies_[slot].entered && bodies_.is_jump(slot, motion, clock_.now));
     if (jumps.back()) resting_.drop_all(slot);
     resting_.leave(slot);
@@ -384,13 +393,6 @@ void Engine<Motion>::start_pieces() {
     const BodyId id = bodies_.id_of(slot);
     reports_.add(Reports::Kind::piece, id, id, {.time = clock_.now});
   }
-}
-
-/// A piece of a body that precesses is over. The next begins where it ends, so nothing has jumped.
-template <class Motion>
-void Engine<Motion>::turn_on() {
-  const auto piece = tumbling_.take_next();
-  change_motion(piece.slot, piece.motion);
 }
 
 template <class Motion>

@@ -165,7 +165,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   void lend(std::size_t bodies) { bodies_.lend(bodies); }
   void take_back() { bodies_.take_back(); }
   void put_back(const Parcel<Motion>& parcel);
-  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Returns timers that have rung.
+  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Returns timers that have
+  /// rung.
   std::vector<Timers::Image::One> note_passed(double t);
   /// Forgets all but the bodies, until go_on().
   void set_aside();
@@ -215,7 +216,6 @@ class Engine final : private RestingListener<BodyMotionType> {
   void set_horizon(double limit);
   void go_back(double t);
   void start_pieces();
-  void turn_on();
   void ring();
   void count_edit();
 
@@ -329,6 +329,12 @@ class Engine final : private RestingListener<BodyMotionType> {
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(turns<Motion>);
+  // turning/turning_pieces.cpp: of bodies that precess
+  void turn_on() requires(turns<Motion>);
+  double left_alone_until(BodySlot slot) const requires(turns<Motion>);
+  void look_at(BodySlot slot) requires(turns<Motion>);
+  void look_at_tested() requires(turns<Motion>);
+  void turn(BodySlot slot, const Motion& motion) requires(turns<Motion>);
   bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }
   Mobility mobility(BodySlot slot) const requires(turns<Motion>);
   Motion met(BodySlot slot, double t) requires(turns<Motion>);

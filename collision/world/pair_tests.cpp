@@ -300,6 +300,23 @@ bool Pairs<Motion>::certify() {
 }
 
 template <class Motion>
+double Pairs<Motion>::alone_until(BodySlot id, double larger) const {
+  double until = never;
+  for (const Link& link : links(id)) {
+    const Pair& pair = pairs_[link.slot];
+    const detail::Body<Motion>& other = bodies_[link.other];
+    const bool known = !pair.dirty && !pair.overlapping && !contacts_.contains(link.slot);
+    if (!known || unbounded(pair) || (other.shape && bends(other.shape->shape))) return clock_.now;
+    const auto radius = [&](BodySlot slot) { return (1 + larger) * bodies_[slot].bounding_radius; };
+    const certificates::BallSeparation<Motion::degree> apart{bodies_.path(id), bodies_.path(link.other), radius(id),
+                                                             radius(link.other)};
+    until = std::min(until, apart.apart_until(clock_.now));
+    if (!(until > clock_.now)) return clock_.now;
+  }
+  return until;
+}
+
+template <class Motion>
 void Pairs<Motion>::test_boxes(Slot slot) {
   Pair& pair = pairs_[slot];
   const BoxOverlap<Motion::degree> boxes(volumes_.box(pair.a), volumes_.box(pair.b));

@@ -118,6 +118,24 @@ class Pairs final : public PairListener {
   /// A body has another motion, or has jumped. prefetch() may be called before.
   void motion_changed(BodySlot id, bool jumped);
   void prefetch(BodySlot id) const;
+  /// A body goes on along its path and turns otherwise. Pairs with those for which waits(other) are left out.
+  template <class Waits>
+  void turned(BodySlot id, const Waits& waits) {
+    for (const Link& link : links(id)) {
+      if (!waits(link.other)) mark_dirty(link.slot);
+    }
+  }
+  /// Calls visit(a, b) for each pair that is to be tested, and for those that become so meanwhile.
+  template <class Visit>
+  void every_untested(const Visit& visit) const {
+    for (std::size_t i = 0; i < dirty_.size(); ++i) {
+      const auto [a, b] = std::pair(pairs_[dirty_[i]].a, pairs_[dirty_[i]].b);
+      if (pairs_[dirty_[i]].alive) visit(a, b);
+    }
+  }
+  /// A time up to which the ball around the body meets none around others, whatever the orientations; now, or earlier,
+  /// where that is not known. The balls are larger than they need be by this part of their radii.
+  double alone_until(BodySlot id, double larger) const;
   /// A body has another box, and moves as before.
   void box_changed(BodySlot id);
   /// The next contact of the two has to be found anew.

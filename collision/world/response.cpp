@@ -103,6 +103,9 @@ std::uint64_t Engine<Motion>::count_meeting(BodySlot id) {
 
 template <class Motion>
 void Engine<Motion>::take_up(BodySlot id, const Motion& motion) {
+  if constexpr (turns<Motion>) {
+    if (tumbling_.is_alone(id)) look_at(id);
+  }
   change_motion(id, tumbling_.has(id) ? tumbling_.take_up(id, motion, clock_.now) : motion);
 }
 

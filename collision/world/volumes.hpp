@@ -156,9 +156,13 @@ inline KineticBox<Motion::degree> Volumes<Motion>::rigid_box(BodySlot slot) cons
     }
   }
   const bool sphere = is_round(slot);
-  const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(b.bounding_radius);
+  double radius = b.bounding_radius;
+  if constexpr (turns<Motion>) {
+    if (b.tumbles && !options_.report_pairs) radius += path_rounding * radius;
+  }
+  const Eigen::Vector3d half_extents = Eigen::Vector3d::Constant(radius);
   // Not if pairs are reported: these are pairs whose boxes overlap unrounded.
-  const double rounding = sphere && !options_.report_pairs ? b.bounding_radius : 0;
+  const double rounding = sphere && !options_.report_pairs ? radius : 0;
   return box_around<Motion::degree>(bodies_.path(slot), sphere ? -half_extents : b.shape->low,
                                     sphere ? half_extents : b.shape->high, rounding);
 }

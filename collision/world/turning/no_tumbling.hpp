@@ -27,6 +27,8 @@ requires(!turns<Motion>) class Tumbling<Motion> {
     Motion motion;
   };
   static Piece take_next() { return {}; }
+  static bool is_alone(BodySlot) { return false; }
+  static void set_unheard_until(double) {}
   static void audit(double) {}
 
   struct Progress {

@@ -4,6 +4,7 @@
 #include "collision/vectors.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/queue_room.hpp"
+#include "collision/world/turning/turning_extents.hpp"
 #include "kds/audit.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ void Tumbling<Motion>::add(BodySlot slot, const PrincipalInertia& inertia) {
 template <class Motion>
 void Tumbling<Motion>::remove(BodySlot slot) {
   if (!has(slot)) return;
+  if (is_alone(slot)) --alone_;
   of_[slot].reset();
   ends_.clear(slot);
 }
@@ -90,13 +92,47 @@ Motion Tumbling<Motion>::take_up(BodySlot slot, const Motion& given, double t) {
   return motion_of(body, orientation, piece, t);
 }
 
+/// A path that is restarted is off by less than 2^-49 of the sum of its terms' magnitudes; so is the one with which it
+/// is compared.
+template <class Motion>
+bool Tumbling<Motion>::can_leave_alone(BodySlot slot, double t) const {
+  const Body& body = *of_[slot];
+  if (body.astray || !(t < never)) return false;
+  double farthest = 0;
+  for (std::size_t k = Motion::degree + std::size_t{1}; k-- > 0;) {
+    farthest = farthest * (t - body.path.start) + body.path.coefficients[k].cwiseAbs().maxCoeff();
+  }
+  return 0x1p-48 * farthest <= path_rounding * bodies_[slot].bounding_radius;
+}
+
+template <class Motion>
+void Tumbling<Motion>::leave_alone(BodySlot slot, double t) {
+  ++alone_;
+  ends_.set(slot, t);
+}
+
+template <class Motion>
+Motion Tumbling<Motion>::catch_up(BodySlot slot, double t) {
+  --alone_;
+  Body& body = *of_[slot];
+  if (!(body.ends < t)) return set_end(slot, body.ends), bodies_.motion(slot);
+  const PiecesInARow row = pieces_until(t, body.inertia, body.state, body.ends, body.ahead, error_);
+  counters_.rotation_pieces += row.count, counters_.motion_updates += row.count;
+  begin(slot, row.last);
+  return motion_of(body, of_body(body.inertia, row.from), row.last, row.start);
+}
+
 template <class Motion>
 typename Tumbling<Motion>::Piece Tumbling<Motion>::take_next() {
   const double t = next_time();
-  const BodySlot slot = ends_.top().slot;
+  const BodySlot slot = next_body();
   Body& body = *of_[slot];
+  if (is_alone(slot)) {
+    const Motion motion = catch_up(slot, t);
+    if (body.ends > t) return {slot, motion};
+  }
   if (body.inertia.symmetry < 0) body.state.orientation = body.ahead, body.state.time = t;
-  ++counters_.rotation_pieces;
+  ++counters_.rotation_pieces, ++counters_.motion_updates;
   if (!body.astray) {
     const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.ahead, body.ahead, error_);
     const Motion motion = motion_of(body, of_body(body.inertia, body.ahead), piece, t);
@@ -226,6 +262,7 @@ void Tumbling<Motion>::go_on() {
 template <class Motion>
 void Tumbling<Motion>::become(const Image& image) {
   of_ = image.of;
+  alone_ = 0;
   ends_.resize(0);
   ends_.resize(of_.size());
   for (BodySlot slot = 0; slot < of_.size(); ++slot) {

@@ -17,6 +17,10 @@
 
 namespace kds::collision {
 
+/// The pieces of a body that precesses (tumbling.hpp) restart its path, which rounds it. Balls and boxes around it that
+/// count for several pieces are larger than those of one by this part of its radius.
+inline constexpr double path_rounding = 0x1p-24;
+
 /// Calls take(x) for points of which the convex hull holds the shape: those of a hull, the corners of the oriented box
 /// around a mesh, in its axes rounded to floats, which are off by 2^-20 of its size. False if there are none.
 template <class Take>

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 
@@ -117,6 +118,44 @@ TEST_CASE("rotation piece: a clock that is too coarse is refused") {
   const PrincipalInertia inertia = principal_inertia(Vector3d(1, 2, 3).asDiagonal());
   const RotationState state{Vector3d(0x1p60, 0x1p60, 0), Quaterniond::Identity(), 1};
   CHECK_THROWS_AS(rotation_piece(inertia, state, 1, state.orientation, state.orientation, 1e-3), std::runtime_error);
+}
+
+TEST_CASE("pieces in a row are those of one after the other") {
+  for (std::uint64_t seed = 0; seed < 300; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    PrincipalInertia inertia{.moments = {1, 1, random.between(0.6, 1.9)}, .symmetry = 2};
+    if (seed % 2 == 0) inertia.moments[1] = random.between(0.7, 1.4), inertia.symmetry = -1;
+    RotationState state{.momentum = 3 * random_vector(random), .orientation = random_rotation(random), .time = 0.5};
+    const double bulge = 1e-3;
+    RotationPiece piece = rotation_piece(inertia, state, state.time, state.orientation, state.orientation, bulge);
+    if (piece.end == never) continue;  // about a principal axis
+    const RotationState first = state;
+    const RotationPiece before = piece;
+    const double start_of_row = piece.end;
+    for (const double until : {start_of_row, 1.0, 3.0}) {
+      RotationState in_a_row = first;
+      const PiecesInARow row = pieces_until(until, inertia, in_a_row, start_of_row, before.orientation, bulge);
+      std::size_t count = 0;
+      double start = start_of_row, end = start_of_row;
+      Quaterniond from = before.orientation;
+      state = first, piece = before;
+      do {
+        from = piece.orientation, start = end;
+        if (inertia.symmetry < 0) state.orientation = from, state.time = start;
+        piece = rotation_piece(inertia, state, start, from, from, bulge);
+        end = piece.end;
+        ++count;
+      } while (end < until);
+      CHECK(row.count == count);
+      CHECK(row.start == start);
+      CHECK(row.from.coeffs() == from.coeffs());
+      CHECK(row.last.end == end);
+      CHECK(row.last.orientation.coeffs() == piece.orientation.coeffs());
+      CHECK(row.last.angular_velocity == piece.angular_velocity);
+      CHECK(in_a_row == state);
+    }
+  }
 }
 
 }  // namespace test_rotation_piece
