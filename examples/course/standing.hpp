@@ -16,8 +16,8 @@ struct Standing {
   friend bool operator==(const Standing&, const Standing&) = default;
 };
 
-/// The costs that the headers of the structures state, for n elements. Each function adds what a run has counted, except
-/// where the structure does not count.
+/// The costs that the headers of the structures state, for n elements. Each function adds what a run has counted,
+/// except where the structure does not count.
 namespace standing {
 
 inline Standing counted(Standing stated, const Measures& run) {
@@ -31,8 +31,8 @@ inline Standing counted(Standing stated, const Measures& run) {
 
 /// examples/list_in_forty_lines.hpp
 inline Standing sorted_list(const Measures& run) {
-  return counted({"Sorted list", "3 certificates an event", "every event changes the order", "2 certificates an element",
-                  "n \u2212 1 certificates"},
+  return counted({"Sorted list", "3 certificates an event", "every event changes the order",
+                  "2 certificates an element", "n \u2212 1 certificates"},
                  run);
 }
 
@@ -46,9 +46,8 @@ inline Standing heap(const Measures& run) {
 
 /// structures/tournament.hpp
 inline Standing tournament(const Measures& run) {
-  return counted({"Tournament", "O(log n) certificates an event",
-                  "many events change a match, but not the winner", "log\u2082 n certificates an element at most",
-                  "n \u2212 1 certificates"},
+  return counted({"Tournament", "O(log n) certificates an event", "many events change a match, but not the winner",
+                  "log\u2082 n certificates an element at most", "n \u2212 1 certificates"},
                  run);
 }
 
@@ -63,11 +62,12 @@ inline Standing convex_hull(const Measures& run) {
 
 /// structures/delaunay.hpp
 inline Standing delaunay(const Measures& run) {
-  return counted({"Delaunay triangulation", "20 certificates an event at most, which is a flip",
-                  "every event changes the triangulation, but where an edge of the hull changes its heading",
-                  "some 3 certificates for each neighbour of a point, of which it has 6 on average, and n \u2212 1 at worst",
-                  "5 n certificates at most"},
-                 run);
+  return counted(
+      {"Delaunay triangulation", "20 certificates an event at most, which is a flip",
+       "every event changes the triangulation, but where an edge of the hull changes its heading",
+       "some 3 certificates for each neighbour of a point, of which it has 6 on average, and n \u2212 1 at worst",
+       "5 n certificates at most"},
+      run);
 }
 
 /// structures/spatial_triangulation.hpp
@@ -88,8 +88,8 @@ inline Standing smallest_gap(const Measures& run) {
 
 /// examples/11_your_own_structure.cpp
 inline Standing band(const Measures& run) {
-  return counted({"Band", "1 certificate an event", "every event changes who is in the band",
-                  "2 certificates a value", "2 n certificates"},
+  return counted({"Band", "1 certificate an event", "every event changes who is in the band", "2 certificates a value",
+                  "2 n certificates"},
                  run);
 }
 
