@@ -20,7 +20,7 @@ function showStandings() {
   }
 }
 
-/** Lines of the program wrap to where they begin, and remarks stand back. It is open where it stands beside the picture. */
+/** Lines of the program wrap to where they begin. It is open where it stands beside the picture. */
 function showProgram() {
   if (!$('code')) return;
   for (const pre of $('code').querySelectorAll('pre')) {

@@ -51,7 +51,8 @@ function grippedMotion(motions, drawn) {
   const motion = (grip.title ? drawn[grip.title] : motions)[grip.index];
   const elapsed = now - motion.start;
   const names = grip.title ? ['x', 'y'] : coordinates;
-  return {motion, elapsed, states: names.map((name) => [name, value(motion[name], elapsed), slope(motion[name], elapsed)])};
+  const states = names.map((name) => [name, value(motion[name], elapsed), slope(motion[name], elapsed)]);
+  return {motion, elapsed, states};
 }
 
 /** A grip at a point of the model: what is dragged is the element, or the handle of its velocity. */

@@ -108,7 +108,8 @@ function lineView(svg) {
     moving.marks.forEach((mark, k) => mark.classList.toggle('past', k < number));
     const places = [...moving.elements.keys()].map((id) => [scale.x(t), scale.y(position(id, t).y)]);
     const sideways = (scale.x(t) - left > 3 * nameRadius + ring ? -1 : 1) * (2 * nameRadius + 6);
-    placeElements([...moving.elements.values()], places, [left - ring, top - nameRadius, width, height - bottom], sideways);
+    const box = [left - ring, top - nameRadius, width, height - bottom];
+    placeElements([...moving.elements.values()], places, box, sideways);
     for (const [id, group] of moving.elements) {
       group.classList.toggle('marked', (state.marked ?? []).includes(id));
       group.classList.toggle('lit', lit.includes(id));
