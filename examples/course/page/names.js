@@ -22,7 +22,8 @@ function drawElement(element, parent, scale) {
 const nameRadius = 9;
 
 /**
- * Moves discs apart that would hide one another, and keeps them within a box (x, y, x, y). Returns where each comes to lie: its place, unless another is in its way.
+ * Moves discs apart that would hide one another, and keeps them within a box (x, y, x, y). Returns
+ * where each comes to lie: its place, unless another is in its way.
  */
 function apart(places, radius, [x0, y0, x1, y1]) {
   const at = places.map((place) => [...place]);
