@@ -23,7 +23,8 @@ namespace standing {
 inline Standing counted(Standing stated, const Measures& run) {
   const auto number = [](std::uint64_t count) { return std::to_string(count); };
   stated.responsive += " (here at most " + number(run.most_touched) + ")";
-  stated.efficient += " (here " + number(run.external) + " of " + number(run.events + run.followed) + ")";
+  stated.efficient +=
+      " (here " + number(run.external) + " of " + number(run.events + run.followed) + " events change the answer)";
   stated.local += " (at the end at most " + number(run.most_per_element) + ")";
   stated.compact += " (here at most " + number(run.most_held) + ")";
   return stated;
@@ -46,7 +47,7 @@ inline Standing heap(const Measures& run) {
 
 /// structures/tournament.hpp
 inline Standing tournament(const Measures& run) {
-  return counted({"Tournament", "O(log n) certificates an event", "many events change a match, but not the winner",
+  return counted({"Tournament", "O(log n) certificates an event", "an event may change a match, and not the winner",
                   "log\u2082 n certificates an element at most", "n \u2212 1 certificates"},
                  run);
 }
@@ -81,7 +82,7 @@ inline Standing delaunay_in_space(const Measures& run) {
 /// examples/smallest_gap.hpp, on structures/champion.hpp
 inline Standing smallest_gap(const Measures& run) {
   return counted({"Smallest gap", "O(log n) certificates an event, of its own or of the list",
-                  "most events change the list or a match, not the answer",
+                  "an event may change the list or a match, and not the answer",
                   "a value is in two gaps, and each of these in O(log n) certificates", "O(n) certificates"},
                  run);
 }
