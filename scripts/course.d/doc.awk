@@ -102,7 +102,7 @@ BEGIN {
 /^ *```/ && !in_code { end_table(); end_paragraph(); if ($0 ~ /^```/) end_lists(0); put("<pre>"); in_code = 1; next }
 /^ *```/ { body = body "</pre>\n"; in_code = 0; next }
 in_code { put(escaped($0)); next }
-/^\[[^]]+\]: [^ ]+$/ || /^!\[/ { next }
+/^\[[^]]+\]: [^ ]+$/ || /^!\[/ || /^<!--.*-->$/ { next }
 /^ *$/ { if (in_block) pending = pending "\n"; end_table(); end_paragraph(); blank = 1; next }
 in_block && !/^    / { body = body "</pre>\n"; in_block = 0 }
 /^    / && (in_block || (blank && lists == 0)) {
