@@ -28,6 +28,12 @@ BEGIN {
     gsub(/ /, "-", anchor)
     $0 = $0 " {#" page "-" anchor "}"
   }
+  # Doxygen finds pictures by their names, and copies them beside its pages.
+  while (match($0, /!\[[^]]*\]\([^)]*\//)) {
+    link = substr($0, RSTART, RLENGTH)
+    sub(/\].*/, "](", link)
+    $0 = substr($0, 1, RSTART - 1) link substr($0, RSTART + RLENGTH)
+  }
   gsub(/\]\(#/, "](#" page "-")
   while (match($0, /\]\([A-Za-z0-9_.\/-]+\.md#/)) {
     $0 = substr($0, 1, RSTART + 1) "#" name_of(substr($0, RSTART + 2, RLENGTH - 3)) "-" substr($0, RSTART + RLENGTH)

@@ -10,6 +10,7 @@
 
 namespace kds::collision {
 
+/// A vector in space with some 106 bits for each coordinate.
 struct PreciseVector {
   std::array<DoubleDouble, 3> coordinates{};
 

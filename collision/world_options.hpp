@@ -52,6 +52,7 @@ struct Walls {
   double restitution = 1;  ///< in [0, 1]; see BodyDescription
 };
 
+/// How a world is simulated: its clock, its broad phase, and what contacts do.
 struct WorldOptions {
   double start_time = 0;  ///< s; keep it near 0: event times are rounded to doubles, which are sparse far from it
   /// s, > 0; how far ahead events are predicted at a time. A step without a limit that finds nothing within one more

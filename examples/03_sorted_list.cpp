@@ -57,5 +57,6 @@ int main(int argc, char** argv) {
   simulator.audit();  // checks every certificate with exact signs; throws if one does not hold
 
   std::cout << swaps << " swaps later, at t = 8: " << page.names(list.rule().order) << '\n';
+  page.standings = {course::standing::sorted_list(list.measures())};
   page.write(argc, argv, "03_sorted_list");
 }

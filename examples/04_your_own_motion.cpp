@@ -90,5 +90,6 @@ int main(int argc, char** argv) {
   simulator.audit();
   std::cout << "after " << bounces << " bounces and " << swaps << " swaps the highest ball is "
             << page.name(list.rule().order.back()) << '\n';
+  page.standings = {course::standing::sorted_list(list.measures())};
   page.write(argc, argv, "04_your_own_motion");
 }

@@ -75,5 +75,6 @@ int main(int argc, char** argv) {
             << "heap: " << measures.events << " events, " << measures.external << " changes of the top, at most "
             << measures.most_held << " certificates\n"
             << "tournament: " << tournament.counters().events << " events\n";
+  page.standings = {course::standing::heap(measures), course::standing::tournament(tournament.measures())};
   page.write(argc, argv, "05_tournament");
 }

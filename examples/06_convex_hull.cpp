@@ -77,5 +77,6 @@ int main(int argc, char** argv) {
   std::cout << measures.events << " events, " << changes << " changes of the hull\n"
             << "an event: " << static_cast<double>(measures.touched) / static_cast<double>(measures.events)
             << " certificates on average, " << measures.most_touched << " at most\n";
+  page.standings = {course::standing::convex_hull(measures)};
   page.write(argc, argv, "06_convex_hull");
 }

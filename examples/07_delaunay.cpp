@@ -59,5 +59,6 @@ int main(int argc, char** argv) {
   const Measures measures = delaunay.measures();
   std::cout << measures.external << " flips, " << measures.events - measures.external << " other events, at most "
             << measures.most_held << " certificates\n";
+  page.standings = {course::standing::delaunay(measures)};
   page.write(argc, argv, "07_delaunay");
 }

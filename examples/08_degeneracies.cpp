@@ -92,5 +92,6 @@ int main(int argc, char** argv) {
   square[0] = Path{{Polynomial<2>{{0.5, 0.375, 0}}, Polynomial<2>{{0.5, 0.375, 0}}}, 0};
   std::cout << "one corner overtakes the circle of the others at t = 4: " << flips_of("Four on a circle once")
             << " flip\n";
+  page.standings = {course::standing::sorted_list(list.measures())};
   page.write(argc, argv, "08_degeneracies");
 }

@@ -108,11 +108,12 @@ int main(int argc, char** argv) {
   KineticSweepAndPrune<2> sweep(0, {.listed = ListedAxes::all});
   sweep.insert(entries, 0, teller);
   teller.start();
-  while (sweep.advance(end, teller)) {
-  }  // returns after each change of a pair
+  std::uint64_t changes = 0;
+  while (sweep.advance(end, teller)) ++changes;  // returns after each change of a pair
   sweep.audit(end);
   const auto counters = sweep.counters();
   std::cout << teller.all() << " pairs have overlapped; " << counters.swaps << " swaps, " << counters.certificates
             << " certificates\n";
+  page.standings = {course::standing::sweep_and_prune(counters.swaps, changes)};
   page.write(argc, argv, "09_sweep_and_prune");
 }

@@ -115,5 +115,6 @@ int main(int argc, char** argv) {
   while (simulator.step(end)) simulator.audit();
   std::cout << crossings << " crossings, and at the end " << known(structure.rule(), end).marked.size()
             << " are in the band\n";
+  page.standings = {course::standing::band(structure.measures())};
   page.write(argc, argv, "11_your_own_structure");
 }

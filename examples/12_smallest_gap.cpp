@@ -79,5 +79,6 @@ int main(int argc, char** argv) {
   const Measures measures = gap.measures();
   std::cout << measures.followed + measures.events << " events, " << measures.external << " of them another pair\n"
             << "the smallest gap has been checked after every event\n";
+  page.standings = {course::standing::smallest_gap(measures)};
   page.write(argc, argv, "12_smallest_gap");
 }

@@ -83,5 +83,6 @@ int main(int argc, char** argv) {
   const Measures measures = delaunay.measures();
   std::cout << measures.events << " events, in " << flips << " of them edges come or go; at most " << measures.most_held
             << " certificates\nthe triangulation was that of points at rest after every event\n";
+  page.standings = {course::standing::delaunay_in_space(measures)};
   page.write(argc, argv, "13_delaunay_in_space");
 }

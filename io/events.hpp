@@ -13,6 +13,7 @@
 
 namespace kds::io {
 
+/// What an event of a scene is.
 enum class EventKind {
   contact,
   separation,
@@ -32,6 +33,7 @@ inline constexpr std::array<std::string_view, 11> event_kind_names{
     "contact", "separation", "overlap", "wall", "pair_begin", "pair_end", "rest", "wake", "rest", "wake", "pass"};
 inline constexpr std::array<std::string_view, 6> wall_names{"-x", "+x", "-y", "+y", "-z", "+z"};
 
+/// An event of a scene.
 struct Event {
   double time = 0;
   EventKind kind = EventKind::contact;

@@ -13,6 +13,7 @@
 
 namespace kds::io {
 
+/// The triangles of a mesh file, as it has them.
 struct MeshData {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;

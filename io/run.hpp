@@ -16,6 +16,7 @@
 
 namespace kds::io {
 
+/// How a scene is run.
 struct RunOptions {
   std::string broad_phase = "auto";  ///< a name in collision/broad_phase/broad_phase_kind.hpp
   int kdop = 6;                      ///< 6, boxes, or, for "kinetic-sap", 14, 18 or 26

@@ -35,6 +35,7 @@ struct SurfaceNumbers {
 /// How far from 1 the norm of an orientation may be: files carry few digits. It is normalised.
 inline constexpr double orientation_tolerance = 1e-6;
 
+/// A body as a scene describes it.
 struct SceneBody {
   std::string name;
   kds::collision::Shape shape;
@@ -53,6 +54,7 @@ struct SceneBody {
   std::vector<MotionPiece> motion;  ///< not empty; starts ascend
 };
 
+/// A mesh that bodies of a scene share.
 struct SceneMesh {
   std::string name;
   std::string file;  ///< as written in the scene; empty of a heightfield, or if it was made for a body with a pivot
@@ -60,8 +62,10 @@ struct SceneMesh {
 };
 
 using kds::collision::Response;  ///< a scene has `none` or `elastic`
+/// What is at the border of a domain.
 enum class Walls { open, reflect };
 
+/// The box in which a scene takes place.
 struct Domain {
   Eigen::Vector3d min;
   Eigen::Vector3d max;

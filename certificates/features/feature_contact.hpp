@@ -9,6 +9,7 @@
 
 namespace kds::certificates {
 
+/// What is known of the contact of two features between two times.
 enum class FeatureContactStatus : std::uint8_t {
   none,       ///< certified: the features do not touch in [t0, t1]
   contact,    ///< certified: they touch, for the first time in [time, latest]

@@ -15,6 +15,7 @@ enum class BroadPhaseKind {
   all_pairs,    ///< no pruning: every pair tested once and its result kept
 };
 
+/// A kind of broad phase, the name by which tools know it, and what it is in words.
 struct NamedBroadPhase {
   BroadPhaseKind kind;
   std::string_view name;

@@ -25,6 +25,7 @@ enum class Drawn {
 /// Called for each line, in space, in units of length.
 using DrawLine = std::function<void(const Eigen::Vector3d& from, const Eigen::Vector3d& to, Drawn what)>;
 
+/// What is drawn of a world.
 struct DrawOptions {
   int sides = 24;                ///< lines of a circle
   double velocity_seconds = 0;   ///< s; velocities are drawn if it is > 0

@@ -15,6 +15,7 @@
 
 namespace kds::collision {
 
+/// The numbers from `low` to `high`.
 struct Interval {
   double low;
   double high;

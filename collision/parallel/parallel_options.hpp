@@ -10,6 +10,7 @@ namespace kds::collision {
 
 class StepListener;
 
+/// How a scene is divided among threads and processes.
 struct ParallelOptions {
   std::size_t threads =
       0;  ///< of each process; 0 for as many as the machine has, or one if there are several processes

@@ -130,6 +130,7 @@ class EventLogs {
   std::vector<std::size_t> next_;
 };
 
+/// Merges the events of domains that are all in memory.
 class EventMerge : public BasicEventMerge<EventLogs> {
  public:
   EventMerge() : EventMerge(std::vector<std::vector<DomainEvent>>()) {}

@@ -22,6 +22,7 @@
 
 namespace kds::collision {
 
+/// What a periodic world has done so far.
 struct PeriodicCounters {
   std::uint64_t contacts = 0;
   std::uint64_t wraps = 0;         ///< bodies that have left the box and come in at the other side

@@ -11,6 +11,7 @@
 
 namespace kds::collision {
 
+/// Mass, centre of mass and inertia of a body.
 struct MassProperties {
   double mass;
   Eigen::Vector3d centre;   ///< of mass, from the origin of the shape; units of length

@@ -49,6 +49,7 @@ struct Surfaces {
   bool smooth() const { return friction == 0 || tangential_restitution == -1; }
 };
 
+/// What two bodies that may turn do to each other in a contact.
 struct TurningImpulse {
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();  ///< on b, and the opposite on a; mass * length / s, rounded
   bool slides = false;                                ///< whether friction was too little for e_t

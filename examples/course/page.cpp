@@ -160,6 +160,13 @@ std::string Page::json() const {
   put(page, "changeable", changeable_);
   page["names"] = {
       {"event", legend.event}, {"marked", legend.marked}, {"outline", legend.outline}, {"edges", legend.edges}};
+  for (const Standing& standing : standings) {
+    page["standings"].push_back({{"structure", standing.structure},
+                                 {"responsive", standing.responsive},
+                                 {"efficient", standing.efficient},
+                                 {"local", standing.local},
+                                 {"compact", standing.compact}});
+  }
   put(page, "window", window);
   put(page, "walls", walls);
   put(page, "edges", edge_style);

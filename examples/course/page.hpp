@@ -4,6 +4,7 @@
 #include "certificates/plane_motion.hpp"
 #include "certificates/point_motion.hpp"
 #include "examples/course/drawing.hpp"
+#include "examples/course/standing.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "kds/motion.hpp"
 
@@ -148,6 +149,7 @@ class Page {
   bool intervals = false;      ///< draw the shadows of boxes on both axes
   std::string edge_style;      ///< "pair" for a broken line
   double play_time = 14;       ///< s that the whole run lasts on the screen
+  std::vector<Standing> standings;  ///< how the structures stand in the four measures
 
   /// The recording, for the page's scripts. Throws std::logic_error if an element has no motion.
   std::string json() const;

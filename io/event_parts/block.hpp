@@ -13,6 +13,7 @@
 
 namespace kds::io {
 
+/// What a block of a part of a log contains.
 enum class BlockKind : std::uint64_t {
   section,  ///< SectionHead: a run begins, or one that had ended early goes on
   events,   ///< records, of a stretch that is run as one world

@@ -119,6 +119,7 @@ class Repair<E, Changes<Types...>> : public Repair<E>, public detail::Reports<Ty
   void clear_reports() { (detail::Reports<Types>::changes_.clear(), ...); }
 };
 
+/// The same for a rule that reports changes, of one type here.
 template <MovingElement E, class Change>
 class Repair : public Repair<E, Changes<Change>> {
   template <class>

@@ -7,6 +7,7 @@
 
 namespace kds {
 
+/// Four doubles that are computed with at once, as two vectors of two.
 struct FourDoubles {
   Two low, high;
 

@@ -22,6 +22,7 @@
 
 namespace kds::testing {
 
+/// What a trial of a structure consists of.
 struct TrialOptions {
   std::uint64_t seed = 1;
   Kind kind = Kind::generic;

@@ -72,6 +72,7 @@ class SolidSide {
   double radius(std::uint32_t) const { return 0; }  // it is not to be split
 };
 
+/// A box.
 class BoxOfPair : public SolidSide {
  public:
   explicit BoxOfPair(const Box& box) : half_(box.half_extents), node_(box_node(half_)) {}
@@ -92,6 +93,7 @@ class BoxOfPair : public SolidSide {
   ObbNode node_;
 };
 
+/// A ball.
 class BallOfPair : public SolidSide {
  public:
   explicit BallOfPair(const Sphere& ball) : radius_(ball.radius), node_(box_node(Eigen::Vector3d::Zero())) {}
@@ -112,6 +114,7 @@ class BallOfPair : public SolidSide {
   ObbNode node_;
 };
 
+/// A capsule.
 class CapsuleOfPair : public SolidSide {
  public:
   /// Refers to it.

@@ -4,8 +4,8 @@ const recorded = JSON.parse($('data').textContent);
 const most = 20;
 let program = null, grip = null;
 
-/** What a handle adds to a position: the way of so many seconds at the velocity of now. */
-const ahead = duration * 0.09;
+/** A handle stands where its point would be so many seconds later at the velocity of now: or fewer, or earlier. */
+const usualAhead = duration * 0.09;
 
 /** The points of drawings that may be changed, by title. They stay the same points for the whole run. */
 const drawnOf = (run) => Object.fromEntries((run.changeable ?? []).map((title) => [title,
@@ -46,16 +46,23 @@ function moved(coefficients, elapsed, position, velocity) {
 /** The picture or drawing in which something is dragged; drawings are made anew in every run. */
 const gripped = () => drawings.find(({title}) => title === grip.title)?.svg ?? $('figure');
 
+/** Of the motion that is gripped, in each of its coordinates: where it is now, and how fast. */
+function grippedMotion(motions, drawn) {
+  const motion = (grip.title ? drawn[grip.title] : motions)[grip.index];
+  const elapsed = now - motion.start;
+  const names = grip.title ? ['x', 'y'] : coordinates;
+  const states = names.map((name) => [name, value(motion[name], elapsed), slope(motion[name], elapsed)]);
+  return {motion, elapsed, states};
+}
+
 /** A grip at a point of the model: what is dragged is the element, or the handle of its velocity. */
 function dragTo(x, y) {
   const motions = motionsOf(data), drawn = drawnOf(data);
-  const motion = (grip.title ? drawn[grip.title] : motions)[grip.index];
-  const elapsed = now - motion.start;
-  const target = {x, y};
-  for (const name of grip.title ? ['x', 'y'] : coordinates) {
-    const [p, v] = [value(motion[name], elapsed), slope(motion[name], elapsed)];
-    motion[name] = grip.velocity ? moved(motion[name], elapsed, p, (target[name] - p) / ahead)
-                                 : moved(motion[name], elapsed, target[name], v);
+  const {motion, elapsed, states} = grippedMotion(motions, drawn);
+  for (const [name, p, v] of states) {
+    const target = {x, y}[name] - grip.beside[name];
+    motion[name] = grip.ahead ? moved(motion[name], elapsed, p, (target - p) / grip.ahead)
+                              : moved(motion[name], elapsed, target, v);
   }
   change(motions, drawn);
 }
@@ -74,10 +81,13 @@ function take(event) {
   event.stopImmediatePropagation();
   event.preventDefault();
   play(false);
-  const {velocity, node, element: of} = (handle ?? element).dataset;
+  const {velocity, ahead, node, element: of} = (handle ?? element).dataset;
   const number = Number(velocity ?? node ?? of);
   const index = title ? number : data.elements.findIndex((e) => e.id === number);
-  grip = {title, index, velocity: handle !== null, from: [event.clientX, event.clientY]};
+  grip = {title, index, ahead: Number(ahead ?? 0), from: [event.clientX, event.clientY]};
+  // Nothing jumps to the pointer: it may have taken the name beside a point, or the rim of a ring.
+  const [x, y] = pointed(event), {states} = grippedMotion(motionsOf(data), drawnOf(data));
+  grip.beside = Object.fromEntries(states.map(([name, p, v]) => [name, {x, y}[name] - p - v * grip.ahead]));
   try { event.currentTarget.setPointerCapture(event.pointerId); } catch { /* a pointer that a script has made up */ }
   rangeKept = true;
 }
@@ -111,36 +121,53 @@ function drop(event) {
 const handles = make('g', {});
 /** Velocities of now, as lines with a grip at their end. */
 function drawHandles() {
-  const {x0, kx, y0, ky} = $('figure').dataset;
   if (program) drawings.filter(({title}) => data.changeable?.includes(title)).forEach(drawHandlesOf);
   handles.replaceChildren();
   if (handles.parentNode !== $('figure')) $('figure').append(handles);
-  if ((!program && !guessing) || kx === undefined) return;  // in space nothing is dragged but the view
-  for (const element of data.elements) {
-    const piece = pieceAt(element, now);
-    const elapsed = now - piece.start;
+  if ((!program && !guessing) || !view.inside) return;  // in space nothing is dragged but the view
+  data.elements.forEach((element, i) => {
+    const piece = pieceAt(element, now), elapsed = now - piece.start;
     const at = (name) => (piece[name] ? value(piece[name], elapsed) : now);
     const rate = (name) => (piece[name] ? slope(piece[name], elapsed) : 1);
-    const [x, y] = [Number(x0) + kx * at('x'), Number(y0) + ky * at('y')];
-    drawHandle(handles, [x, y], [kx * rate('x') * ahead, ky * rate('y') * ahead], colour.get(element.id), element.id,
-               element.name);
-  }
+    drawHandle({parent: handles, svg: $('figure'), box: view.inside(), i, number: element.id, name: element.name,
+                stroke: colour.get(element.id), place: [at('x'), at('y')], velocity: [rate('x'), rate('y')]});
+  });
 }
-function drawHandlesOf({versions, svg, moving}) {
+function drawHandlesOf({title, versions, svg, moving, width, height}) {
+  versions[0].places.forEach(({x, y, name}, i) => drawHandle({
+    parent: moving, svg, box: [0, 0, width, height], title, i, number: i, name, stroke: 'var(--point)',
+    place: [value(x, now), value(y, now)], velocity: [slope(x, now), slope(y, now)]}));
+}
+
+/** How much of a way from a place, both in pixels, stays in a box: 1 for all of it. */
+function shareInside(place, way, [x0, y0, x1, y1]) {
+  const room = 6;
+  const share = (at, by, low, high) => (Math.abs(by) < 1e-9 ? 1 : ((by > 0 ? high - room : low + room) - at) / by);
+  return Math.max(0, Math.min(1, share(place[0], way[0], x0, x1), share(place[1], way[1], y0, y1)));
+}
+
+/** The line from a point to where it would be later; earlier, if more of that is in the picture. */
+function drawHandle({parent, svg, box, title, i, number, name, stroke, place, velocity}) {
   const {x0, kx, y0, ky} = svg.dataset;
-  versions[0].places.forEach(({x, y, name}, i) => drawHandle(
-    moving, [Number(x0) + kx * value(x, now), Number(y0) + ky * value(y, now)],
-    [kx * slope(x, now) * ahead, ky * slope(y, now) * ahead], 'var(--point)', i, name));
-}
-/** From a place by a way, in pixels. Of a point at rest the grip is above it: one under it could not be taken. */
-function drawHandle(parent, [x, y], way, stroke, number, name) {
-  const [u, v] = Math.hypot(...way) > 0.5 ? way : [0, -1];
-  const length = Math.hypot(u, v);
-  const [from, to] = [10 / length, Math.max(1, 22 / length)];
-  make('path', {class: 'velocity', stroke, d: `M${x + from * u} ${y + from * v}L${x + to * u} ${y + to * v}`}, parent);
+  const [x, y] = [Number(x0) + kx * place[0], Number(y0) + ky * place[1]];
+  const way = [kx * velocity[0] * usualAhead, ky * velocity[1] * usualAhead];
+  const [later, earlier] = [1, -1].map((sign) => sign * shareInside([x, y], way.map((by) => sign * by), box));
+  let ahead = usualAhead * (later > 0.4 || later >= -earlier ? later : earlier);
+  if (grip?.ahead && grip.title === title && grip.index === i) ahead = grip.ahead;
+  let [u, v] = way.map((by) => by * ahead / usualAhead);
+  const length = Math.hypot(u, v), least = 22;
+  if (length < 0.5) {
+    // Of a point at rest the grip is above it: one under it could not be taken.
+    [ahead, u, v] = [usualAhead, 0, -least];
+  } else if (length < least) {
+    const sign = shareInside([x, y], [u, v].map((part) => part * least / length), box) < 1 ? -1 : 1;
+    [ahead, u, v] = [ahead, u, v].map((part) => sign * part * least / length);
+  }
+  const from = 10 / Math.hypot(u, v);
+  make('path', {class: 'velocity', stroke, d: `M${x + from * u} ${y + from * v}L${x + u} ${y + v}`}, parent);
   if (!program) return;
-  const group = make('g', {class: 'handle', 'data-velocity': number,
-                           transform: `translate(${x + to * u} ${y + to * v})`}, parent);
+  const group = make('g', {class: 'handle', 'data-velocity': number, 'data-ahead': ahead,
+                           transform: `translate(${x + u} ${y + v})`}, parent);
   make('title', {text: `velocity of ${name}`}, group);
   make('circle', {r: 14, class: 'reach'}, group);
   make('circle', {r: 5, stroke}, group);
@@ -221,7 +248,7 @@ async function readyToChange() {
     $('change-says').textContent = `Points cannot be dragged: this browser does not run the program (${error.message}).`;
     return false;
   }
-  $('change-says').textContent = 'Drag a point, or the ring ahead of it: its velocity. The program of this page then ' +
+  $('change-says').textContent = 'Drag a point, or the ring beside it: its velocity. The program of this page then ' +
     'runs anew, in your browser.' + (data.changeable ? ' The points of the drawings can be dragged too.' : '');
   $('change').classList.add('ready');
   for (const id of ['figure', 'drawings']) $(id).classList.add('changeable');

@@ -52,9 +52,10 @@ function formula(coefficients) {
   let text = '';
   coefficients.forEach((c, k) => {
     if (c === 0) return;
-    const size = String(Number(Math.abs(c).toPrecision(3)));
+    const rounded = Number(Math.abs(c).toPrecision(3));
+    const size = rounded === 1 && k > 0 ? '' : String(rounded);
     const sign = text === '' ? (c < 0 ? '\u2212' : '') : (c < 0 ? ' \u2212 ' : ' + ');
-    text += sign + size + power(k);
+    text += sign + (size ? size + power(k) : power(k).trim());
   });
   return text || '0';
 }
@@ -181,25 +182,33 @@ function tick(moment) {
   if (now >= data.end) play(false); else requestAnimationFrame(tick);
 }
 
-// The picture takes the height that the rest of the stage leaves of the window, if that is enough for it.
+// The picture takes the height that the rest of the page leaves of the window, if that is enough for it.
 let laidOut = '';
 function resize() {
+  const width = $('frame').clientWidth;
+  if (width === 0) return;  // the page is not shown
   layOutDrawings();
   drawDrawings(now);
   drawHandles();
-  const width = $('frame').clientWidth;
-  const rest = $('stage').offsetHeight - $('figure').getBoundingClientRect().height;
+  const [stage, code] = [$('stage'), $('code')];
+  const beside = (part) => part.offsetLeft > stage.offsetLeft + stage.offsetWidth / 2;
+  const rest = stage.offsetHeight - $('figure').getBoundingClientRect().height;
   const footer = document.querySelector('footer');
-  const below = $('stage').offsetTop + footer.offsetHeight + parseFloat(getComputedStyle(footer).marginTop) +
+  const below = footer.offsetHeight + parseFloat(getComputedStyle(footer).marginTop) +
     parseFloat(getComputedStyle(document.body).paddingBottom);
-  const room = innerHeight - rest - below;
-  const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.62), room)));
-  if (`${width} ${height}` === laidOut) return;
-  laidOut = `${width} ${height}`;
-  layOut(width, height);
-  // Side by side, lists that are longer than the picture scroll.
-  $('aside').style.maxHeight = getComputedStyle($('stage')).gridColumnStart && $('stage').offsetWidth < innerWidth * 0.9
-    ? `${Math.max($('stage').offsetHeight, 560)}px` : '';
+  // Of a program that stands below, its first line.
+  const edges = code ? 3 * parseFloat(getComputedStyle(code).paddingTop) : 0;
+  const folded = code && !beside(code) ? code.firstElementChild.offsetHeight + edges : 0;
+  const room = innerHeight - rest - stage.offsetTop - below - folded;
+  const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.75), room)));
+  if (`${width} ${height}` !== laidOut) {
+    laidOut = `${width} ${height}`;
+    layOut(width, height);
+  }
+  // Side by side, lists that are longer than the stage scroll.
+  const least = document.querySelector('main').style;
+  least.setProperty('--stage-height', `${Math.max(stage.offsetHeight, 560)}px`);
+  $('aside').style.maxHeight = beside($('aside')) ? 'var(--stage-height)' : '';
 }
 function layOut(width, height) {
   set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});
@@ -219,6 +228,7 @@ function showRun(run) {
   shown = -1;
   lit = [];
   drawLegend();
+  showStandings();
   listEvents();
   layOutDrawings();
   layOut(...laidOut.split(' ').map(Number));
@@ -244,23 +254,29 @@ if (view.timeAt) {
 }
 document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey || event.target.matches('select, input[type=number]')) return;
-  const onButton = event.target.tagName === 'BUTTON';
+  const nudge = event.shiftKey ? duration / 200 : 0;
   const actions = {
-    n: () => goToEvent(1), p: () => goToEvent(-1), Home: () => setTime(data.begin), End: () => setTime(data.end),
-    l: () => $('larger').click(), f: fullScreen, g: () => $('game').click(),
-    ArrowRight: () => setTime(now + duration / 200), ArrowLeft: () => setTime(now - duration / 200),
+    ArrowRight: () => (nudge ? setTime(now + nudge) : goToEvent(1)),
+    ArrowLeft: () => (nudge ? setTime(now - nudge) : goToEvent(-1)),
+    Home: () => setTime(data.begin), End: () => setTime(data.end),
   };
-  if (!onButton) actions[' '] = () => play(!playing);
-  const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  // Remote controls of presenters send these, which else would scroll.
+  const whole = document.documentElement.scrollHeight <= innerHeight && !event.target.closest('pre');
+  if (whole) Object.assign(actions, {PageDown: actions.ArrowRight, PageUp: actions.ArrowLeft});
+  const switches = {l: () => $('larger').click(), f: fullScreen, g: () => $('game').click(), c: toggleProgram};
+  if (!event.target.matches('button, summary, input[type=checkbox]')) switches[' '] = () => play(!playing);
+  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+  const action = actions[key] ?? switches[key];
   if (!action) return;
   event.preventDefault();
-  if (!' lfg'.includes(event.key.toLowerCase())) play(false);
+  if (actions[key]) play(false);
   action();
 });
 
 function larger(on) {
   document.documentElement.classList.toggle('larger', on);
   $('larger').setAttribute('aria-pressed', on);
+  laidOut = '';
   resize();
 }
 function fullScreen() {
@@ -271,7 +287,16 @@ function fullScreen() {
 $('layers').hidden = !data.states.some((state) => state.triangles);
 $('cells').addEventListener('change', () => $('figure').classList.toggle('without-cells', !$('cells').checked));
 $('hull').addEventListener('change', () => $('figure').classList.toggle('without-hull', !$('hull').checked));
-$('larger').addEventListener('click', () => larger($('larger').getAttribute('aria-pressed') !== 'true'));
+// The next page of a lecture has larger text too. A browser may refuse to remember.
+const remembered = {
+  get: (name) => { try { return localStorage.getItem(name); } catch { return null; } },
+  put: (name, text) => { try { localStorage.setItem(name, text); } catch { /* then it does not */ } },
+};
+$('larger').addEventListener('click', () => {
+  const on = $('larger').getAttribute('aria-pressed') !== 'true';
+  remembered.put('larger', on);
+  larger(on);
+});
 $('full').addEventListener('click', fullScreen);
 document.addEventListener('fullscreenchange', () => {
   $('full').setAttribute('aria-pressed', document.fullscreenElement !== null);

@@ -46,7 +46,7 @@ function layOutDrawings() {
     const box = rangeKept && kind === 'plane' && kept[i] ? kept[i].box
       : ['x', 'y'].map((name) => extent(places, moves, (place, t) => value(place[name], t)));
     const width = svg.clientWidth;
-    const height = {tree: 46 + 44 * (box[1][1] - box[1][0]), ruler: 88, plane: 190}[kind];
+    const height = {tree: 46 + 44 * (box[1][1] - box[1][0]), ruler: 92, plane: 190}[kind];
     set(svg, {viewBox: `0 0 ${width} ${height}`, height});
     const drawing = {title, versions, kind, axis, svg, caption, box, width, height};
     if (kind === 'ruler') {
@@ -62,7 +62,7 @@ function layOutDrawings() {
 /** Where a drawing has its places, and how large. */
 function scaleDrawing(drawing) {
   const {kind, box: [[x0, x1], [y0, y1]], width, height, svg} = drawing;
-  const [left, top, bottom] = {plane: [18, 18, 18], ruler: [20, 66, 22], tree: [20, 14, 32]}[kind];
+  const [left, top, bottom] = {plane: [18, 18, 18], ruler: [20, 70, 22], tree: [20, 14, 32]}[kind];
   let kx = Math.min((width - 2 * left) / (x1 - x0 || 1), 90), ky = (height - top - bottom) / (y1 - y0 || 1);
   if (kind === 'plane') kx = ky = Math.min(kx, ky, (width - 2 * left) / (x1 - x0 || 1));
   const [mx, my] = [width / 2 - kx * (x0 + x1) / 2, y1 > y0 ? top + ky * y1 : top];
@@ -76,10 +76,10 @@ function scaleDrawing(drawing) {
   const [low, high] = drawing.reach, k = (width - 2 * left) / (high - low || 1);
   drawing.along = (v) => left + (v - low) * k;
   set(svg, {'data-v0': drawing.along(0), 'data-kv': k});
-  make('path', {class: 'axis', d: `M${left} 20H${width - left}`}, drawing.still);
+  make('path', {class: 'axis', d: `M${left} 24H${width - left}`}, drawing.still);
   for (const v of ticks(low, high, width / 80)) {
-    make('path', {class: 'axis', d: `M${drawing.along(v)} 16v4`}, drawing.still);
-    make('text', {x: drawing.along(v), y: 12, 'text-anchor': 'middle', text: v}, drawing.still);
+    make('path', {class: 'axis', d: `M${drawing.along(v)} 20v4`}, drawing.still);
+    make('text', {x: drawing.along(v), y: 16, 'text-anchor': 'middle', text: v}, drawing.still);
   }
 }
 
@@ -117,7 +117,7 @@ function drawOne({kind, axis, svg, caption, moving, x, y, along, radius, roomy},
     const swaps = next && next.slice(0, 2).includes(i) ? ' next' : '';
     const fill = place.of === undefined ? 'var(--point)' : colour.get(place.of);
     if (kind === 'ruler') {
-      const d = `M${along(v)} 20L${px} ${py - radius - 2}`;
+      const d = `M${along(v)} 24L${px} ${py - radius - 2}`;
       make('path', {class: 'leader' + swaps, 'data-leader': i, stroke: fill, d}, moving);
     }
     const group = make('g', {class: 'element', 'data-node': i, transform: `translate(${px} ${py})`}, moving);

@@ -1,7 +1,7 @@
 // The space-time diagram: values on a line, time to the right. A motion of degree two is a parabola, drawn exactly.
 function lineView(svg) {
-  const left = 46, bottom = 34, top = 12;
-  let right = 16;
+  const top = 14, ring = 13;
+  let left = 46, right = 16, bottom = 38;
   let scale, moving = {}, kept;
 
   /** The world line of an element from a to b, both within one run. */
@@ -41,8 +41,15 @@ function lineView(svg) {
   function layout(width, height) {
     svg.replaceChildren();
     const ordered = data.states.some((state) => state.order);
-    right = ordered ? 52 : 16;
+    const heading = make('text', {'text-anchor': 'middle', text: ordered ? 'order' : ''}, svg);
+    const column = heading.getComputedTextLength(), text = parseFloat(getComputedStyle(heading).fontSize);
+    // What is at the beginning, at the end or at the bottom covers none of the numbers and names.
+    right = ordered ? ring + 4 + column : 16;
+    bottom = 2.5 * text + 8;
+    set(heading, {x: width - column / 2 - 2, y: top + 8});
     const [low, high] = range();
+    const labels = ticks(low, high, height / 55).map((v) => [v, make('text', {'text-anchor': 'end', text: v}, svg)]);
+    left = ring + 6 + Math.max(...labels.map(([, label]) => label.getComputedTextLength()));
     const kx = (width - left - right) / duration, ky = (height - top - bottom) / (high - low);
     scale = {x: (t) => left + (t - data.begin) * kx, y: (v) => height - bottom - (v - low) * ky};
     set(svg, {'data-x0': left - data.begin * kx, 'data-kx': kx, 'data-y0': height - bottom + low * ky, 'data-ky': -ky});
@@ -52,13 +59,13 @@ function lineView(svg) {
          make('clipPath', {id: 'inside'}, defs));
     moving.past = make('rect', {x: left, y: top, height: height - top - bottom}, make('clipPath', {id: 'past'}, defs));
 
-    for (const v of ticks(low, high, height / 55)) {
+    for (const [v, label] of labels) {
       make('path', {class: 'grid', d: `M${left} ${scale.y(v)}H${width - right}`}, svg);
-      make('text', {x: left - 6, y: scale.y(v) + 4, 'text-anchor': 'end', text: v}, svg);
+      set(label, {x: left - ring - 3, y: scale.y(v) + 4});
     }
     for (const t of ticks(data.begin, data.end, width / 90)) {
       make('path', {class: 'grid', d: `M${scale.x(t)} ${top}V${height - bottom}`}, svg);
-      make('text', {x: scale.x(t), y: height - bottom + 15, 'text-anchor': 'middle', text: t}, svg);
+      make('text', {x: scale.x(t), y: height - bottom + text + 5, 'text-anchor': 'middle', text: t}, svg);
     }
     make('text', {x: (left + width - right) / 2, y: height - 3, 'text-anchor': 'middle', text: 'time in s'}, svg);
 
@@ -90,25 +97,25 @@ function lineView(svg) {
     });
     moving.cursor = make('path', {class: 'cursor'}, svg);
     moving.elements = new Map(data.elements.map((e) => [e.id, drawElement(e, svg, 1)]));
-    if (ordered) make('text', {x: width - right / 2, y: top + 8, 'text-anchor': 'middle', text: 'order'}, svg);
     moving.order = make('g', {}, svg);
-    moving.size = {width, height};
+    moving.size = {width, height, column};
   }
 
   function draw(t, number, lit) {
-    const {width, height} = moving.size;
-    const state = data.states[number];
+    const {width, height} = moving.size, state = data.states[number];
     set(moving.past, {width: Math.max(0, scale.x(t) - left)});
     set(moving.cursor, {d: `M${scale.x(t)} ${top}V${height - bottom}`});
     moving.marks.forEach((mark, k) => mark.classList.toggle('past', k < number));
+    const places = [...moving.elements.keys()].map((id) => [scale.x(t), scale.y(position(id, t).y)]);
+    const sideways = (scale.x(t) - left > 3 * nameRadius + ring ? -1 : 1) * (2 * nameRadius + 6);
+    const box = [left - ring, top - nameRadius, width, height - bottom];
+    placeElements([...moving.elements.values()], places, box, sideways);
     for (const [id, group] of moving.elements) {
-      const {x, y} = position(id, t);
-      set(group, {transform: `translate(${scale.x(x)} ${scale.y(y)})`});
       group.classList.toggle('marked', (state.marked ?? []).includes(id));
       group.classList.toggle('lit', lit.includes(id));
     }
     drawCertificates(t, number);
-    drawOrder(state.order ?? [], width, height);
+    drawOrder(state.order ?? [], moving.size);
   }
 
   /** Between now's positions of those it is about; and a triangle where and when it is going to fail. */
@@ -130,13 +137,13 @@ function lineView(svg) {
   }
 
   /** The order as it is recorded, the greatest on top. */
-  function drawOrder(order, width, height) {
+  function drawOrder(order, {width, height, column}) {
     moving.order.replaceChildren();
     const step = Math.min(26, (height - top - bottom - 30) / Math.max(1, order.length));
     order.forEach((id, i) => {
       const y = (height - bottom + top) / 2 + step * ((order.length - 1) / 2 - i);
       const group = make('g', {class: 'element', 'data-place': i, 'data-of': id}, moving.order);
-      set(group, {transform: `translate(${width - right / 2} ${y})`});
+      set(group, {transform: `translate(${width - column / 2 - 2} ${y})`});
       make('circle', {class: 'dot', r: Math.min(10, step / 2), fill: colour.get(id)}, group);
       make('text', {y: 4, text: elements.get(id).label}, group);
     });
@@ -145,5 +152,8 @@ function lineView(svg) {
   /** Where the time axis begins and ends, in pixels from the left edge of the picture. */
   const axis = () => ({from: scale.x(data.begin), to: scale.x(data.end)});
 
-  return {layout, draw, axis, timeAt: (x) => data.begin + (x - left) / (scale.x(data.end) - left) * duration};
+  /** The part of the picture within its axes: x, y, x, y. */
+  const inside = () => [left, top, moving.size.width - right, moving.size.height - bottom];
+
+  return {layout, draw, axis, inside, timeAt: (x) => data.begin + (x - left) / (scale.x(data.end) - left) * duration};
 }

@@ -107,19 +107,3 @@ function ticks(low, high, about) {
   for (let i = Math.ceil(low / step); i * step <= high + 1e-9 * step; ++i) result.push(+(i * step).toPrecision(12));
   return result;
 }
-
-/** A dot with the element's letter, or its body if it has a size. */
-function drawElement(element, parent, scale) {
-  const group = make('g', {class: 'element', 'data-element': element.id}, parent);
-  const fill = colour.get(element.id);
-  make('title', {text: element.name}, group);
-  if (element.half) {
-    const [w, h] = element.half.map((half) => half * scale);
-    make('rect', {class: 'body', x: -w, y: -h, width: 2 * w, height: 2 * h, fill, stroke: fill}, group);
-  }
-  if (element.radius) make('circle', {class: 'body', r: element.radius * scale, fill, stroke: fill}, group);
-  make('circle', {class: 'ring', r: 13}, group);
-  make('circle', {class: 'dot', r: 9, fill}, group);
-  make('text', {y: 4, text: element.label}, group);
-  return group;
-}

@@ -22,8 +22,11 @@ function planeView(svg) {
     size = {width, height};
     const strip = data.intervals ? 14 + 7 * data.elements.length : 0;
     const [x0, y0, x1, y1] = bounds();
-    const left = 36 + strip, right = 22, top = 20, bottom = 26 + strip;
-    const k = Math.min((width - left - right) / (x1 - x0), (height - top - bottom) / (y1 - y0));
+    // There is room for numbers like this one, and what is at the edge covers none of them.
+    const widest = make('text', {text: '-0.25'}, svg), length = widest.getComputedTextLength();
+    widest.remove();
+    const ring = 15, right = 8, top = 8, left = length + 10 + strip, bottom = 24 + strip;
+    const k = Math.min((width - left - right - 2 * ring) / (x1 - x0), (height - top - bottom - 2 * ring) / (y1 - y0));
     const middle = {x: (left + width - right) / 2, y: (top + height - bottom) / 2};
     scale = {
       k, x: (x) => middle.x + (x - (x0 + x1) / 2) * k, y: (y) => middle.y - (y - (y0 + y1) / 2) * k,
@@ -39,15 +42,18 @@ function planeView(svg) {
     }
     for (const y of ticks(from.y, to.y, height / 70)) {
       make('path', {class: 'grid', d: `M${left} ${scale.y(y)}H${width - right}`}, svg);
-      make('text', {x: 28, y: scale.y(y) + 4, 'text-anchor': 'end', text: y}, svg);
+      make('text', {x: length + 2, y: scale.y(y) + 4, 'text-anchor': 'end', text: y}, svg);
     }
     if (data.walls) {
       const [wx0, wy0, wx1, wy1] = data.walls;
       const box = {x: scale.x(wx0), y: scale.y(wy1), width: (wx1 - wx0) * k, height: (wy1 - wy0) * k};
       make('rect', {class: 'wall', ...box}, svg);
     }
+    const all = {x: left, y: top, width: width - left - right, height: height - top - bottom};
+    make('rect', all, make('clipPath', {id: 'inside'}, make('defs', {}, svg)));
     for (const layer of ['outline', 'cells', 'edges', 'happened', 'witness', 'trails', 'intervals']) {
       moving[layer] = make('g', {class: `${layer}-layer`}, svg);
+      if (layer !== 'intervals') set(moving[layer], {'clip-path': 'url(#inside)'});
     }
     moving.elements = new Map(data.elements.map((e) => [e.id, drawElement(e, svg, k)]));
   }
@@ -60,9 +66,8 @@ function planeView(svg) {
   function draw(t, number, lit) {
     const state = data.states[number];
     const next = nextToFail(number);
+    placeElements([...moving.elements.values()], [...moving.elements.keys()].map((id) => point(id, t)), inside());
     for (const [id, group] of moving.elements) {
-      const [x, y] = point(id, t);
-      set(group, {transform: `translate(${x} ${y})`});
       group.classList.toggle('marked', (state.marked ?? []).includes(id));
       group.classList.toggle('lit', lit.includes(id));
     }
@@ -153,5 +158,8 @@ function planeView(svg) {
   /** There is no time axis in the picture: the slider has the whole width. */
   const axis = () => ({from: 8, to: size.width - 8});
 
-  return {layout, draw, axis, timeAt: null};
+  /** The part of the picture within its axes: x, y, x, y. */
+  const inside = () => [scale.xs[0], scale.ys[0], scale.xs[1], scale.ys[1]];
+
+  return {layout, draw, axis, inside, timeAt: null};
 }

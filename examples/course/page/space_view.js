@@ -32,7 +32,7 @@ function spaceView(svg) {
   const ballSize = 0.05;
   let scene, reach, balls, rods, trails, witness, labels, ring;
 
-  /** All as large as the box around everything that moves; the camera sees the ball around that box. */
+  /** All as large as the box around everything that moves; the camera sees most of the ball around that box. */
   function layout(width, height) {
     size = {width, height};
     svg.replaceChildren();
@@ -46,7 +46,8 @@ function spaceView(svg) {
     camera.aspect = width / height;
     const narrow = Math.atan(Math.tan(camera.fov * Math.PI / 360) * Math.min(1, camera.aspect));
     controls.target.copy(centre);
-    camera.position.sub(centre).setLength(1.05 * reach / Math.sin(narrow)).add(centre);
+    // What moves stays away from the corners of its box, which may leave the picture.
+    camera.position.sub(centre).setLength(0.9 * reach / Math.sin(narrow)).add(centre);
     camera.updateProjectionMatrix();
     renderer.setSize(width, height, false);
 

@@ -7,11 +7,13 @@ window.course = {
 };
 
 drawLegend();
+showStandings();
+showProgram();
 listEvents();
 const wanted = /^#t=(.+)$/.exec(location.hash);
 if (wanted && Number.isFinite(Number(wanted[1]))) now = Math.min(data.end, Math.max(data.begin, Number(wanted[1])));
 $('time').value = now;
 // In the next frame, for the picture's height follows its width, and the observer would hear of that amidst its work.
 new ResizeObserver(() => requestAnimationFrame(resize)).observe($('frame'));
-resize();
+larger(remembered.get('larger') === 'true');
 window.course.ready = data.coefficients ? readyToChange() : Promise.resolve(false);

@@ -1,7 +1,7 @@
 // Put at the end of a page: uses its controls as somebody would, and reports what is then in the picture, for the
 // checker. The collector of errors stands at the beginning of the page (see ../browser/open_pages.cmake).
 window.addEventListener('load', () => {
-  const report = {errors: window.pageErrors, frames: [], clicks: [], keys: [], overlaps: []};
+  const report = {errors: window.pageErrors, frames: [], clicks: [], keys: []};
   const figure = document.getElementById('figure');
   const slider = document.getElementById('time');
   const numbers = (text) => text.match(/-?[\d.]+(e[-+]?\d+)?/g).map(Number);
@@ -94,27 +94,14 @@ window.addEventListener('load', () => {
     buttons[i].click();
     report.clicks.push({event: i, ...look(null)});
   }
-  const press = (key) => {
-    const before = window.course.now();
-    document.body.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
-    report.keys.push([key, before, window.course.now()]);
+  const press = (name) => {
+    const before = window.course.now(), shiftKey = name.startsWith('Shift+');
+    const key = name.replace('Shift+', '');
+    document.body.dispatchEvent(new KeyboardEvent('keydown', {key, shiftKey, bubbles: true, cancelable: true}));
+    report.keys.push([name, before, window.course.now()]);
   };
-  ['Home', 'n', 'n', 'ArrowRight', 'p', 'End', 'ArrowLeft', 'Home'].forEach(press);
+  ['Home', 'ArrowRight', 'ArrowRight', 'Shift+ArrowRight', 'ArrowLeft', 'End', 'Shift+ArrowLeft', 'Home'].forEach(press);
 
-  // Texts of the picture that run into each other, and a page that is wider than its window.
-  drag((begin + end) / 2);
-  const boxes = [...figure.querySelectorAll(':scope > text')].map((text) => [text.textContent, text.getBBox()]);
-  boxes.forEach(([a, p], i) => boxes.slice(i + 1).forEach(([b, q]) => {
-    const apart = p.x + p.width <= q.x || q.x + q.width <= p.x || p.y + p.height <= q.y || q.y + q.height <= p.y;
-    if (!apart) report.overlaps.push([a, b]);
-  }));
-  for (const svg of document.querySelectorAll('#drawings .drawing')) {
-    const texts = [...svg.querySelectorAll('text')].map((text) => [text.textContent, text.getBoundingClientRect()]);
-    texts.forEach(([a, p], i) => texts.slice(i + 1).forEach(([b, q]) => {
-      const apart = p.right <= q.left || q.right <= p.left || p.bottom <= q.top || q.bottom <= p.top;
-      if (!apart) report.overlaps.push([a, b]);
-    }));
-  }
   if (!document.getElementById('layers').hidden) {
     report.layers = ['cells', 'hull'].map((name) => {
       const shown = () => {
@@ -134,13 +121,10 @@ window.addEventListener('load', () => {
     const x = (t) => picture.left + Number(figure.dataset.x0) + t * Number(figure.dataset.kx);
     report.axes = [[thumb.left + 8, x(begin)], [thumb.right - 8, x(end)]];
   }
-  const plain = figure.querySelector('text').getBBox().height;
-  press('l');
-  report.larger = [figure.querySelector('text').getBBox().height, plain];
-  report.widened = [document.documentElement.scrollWidth, window.innerWidth];
-  press('l');
+  press('c');
+  report.codeOpens = document.getElementById('code').open;
+  press('c');
   report.keys.splice(-2);
-  report.width = [document.documentElement.scrollWidth, window.innerWidth];
 
   // What the page leads to, and the program beside it.
   report.links = [...document.querySelectorAll('nav a')].map((link) => link.getAttribute('href'));

@@ -25,6 +25,14 @@ window.addEventListener('load', async () => {
     check(given.includes('#pragma once') && solution.includes('#pragma once'), `exercise ${i + 1} has no code`);
     check(given !== solution, `exercise ${i + 1} is solved`);
   });
-  check(document.documentElement.scrollWidth <= window.innerWidth, 'the index is wider than its window');
+  const size = () => parseFloat(getComputedStyle(document.querySelector('header p')).fontSize), plain = size();
+  for (const larger of [false, true, false]) {
+    check(larger ? size() > 1.2 * plain : size() === plain, `text is of ${size()} pixels`);
+    check(document.documentElement.scrollWidth <= window.innerWidth, 'the index is wider than its window');
+    document.dispatchEvent(new KeyboardEvent('keydown', {key: 'l', bubbles: true}));
+  }
+  document.getElementById('larger').click();
+  const linked = all('.more a').map((link) => link.getAttribute('href'));
+  check(linked.filter((link) => /^docs\/.*\.html$/.test(link)).length === pictures.length, `it leads to ${linked}`);
   finished(wrong.length > 0 ? wrong : `all ${checks} checks are right`);
 });

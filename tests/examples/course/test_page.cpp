@@ -133,6 +133,28 @@ TEST_CASE("of drawings with one title at one time the last counts", "[course]") 
   CHECK((drawings[1]["title"] == "two" && drawings[1]["since"] == 0.5));
 }
 
+TEST_CASE("a page says how structures stand, with the counts of its run", "[course]") {
+  Page page(View::line, "t", "a", 0, 1);
+  CHECK(!json::parse(page.json()).contains("standings"));
+  const Measures run{.events = 12,
+                     .external = 7,
+                     .followed = 3,
+                     .touched = 30,
+                     .most_touched = 4,
+                     .held = 5,
+                     .most_held = 6,
+                     .most_per_element = 2};
+  page.standings = {course::standing::heap(run), course::standing::sweep_and_prune(117, 21)};
+  const json standings = json::parse(page.json())["standings"];
+  REQUIRE(standings.size() == 2);
+  CHECK(standings[0]["structure"] == "Heap");
+  CHECK(standings[0]["responsive"] == "5 certificates an event at most (here at most 4)");
+  CHECK(standings[0]["efficient"].get<std::string>().ends_with(" (here 7 of 15 events change the answer)"));
+  CHECK(standings[0]["local"] == "3 certificates an element at most (at the end at most 2)");
+  CHECK(standings[0]["compact"].get<std::string>().ends_with(" (here at most 6)"));
+  CHECK(standings[1]["efficient"].get<std::string>().find("here 21 of 117 do") != std::string::npos);
+}
+
 TEST_CASE("a page refuses what it could not show", "[course]") {
   CHECK_THROWS_AS(Page(View::line, "", "", 1, 1), std::invalid_argument);
   Page page(View::line, "", "", 0, 1);
