@@ -97,6 +97,9 @@ struct Keys {
   }
 };
 
+/// Colours of bodies that move, and numbers of those of others.
+constexpr std::size_t colours = 8, of_fixed = 8, of_sensors = 9;
+
 class Exporter {
  public:
   Exporter(const Scene& scene, const Record& record, double rate) : scene_(scene), record_(record), rate_(rate) {}
@@ -142,17 +145,17 @@ class Exporter {
     animate(number, body, pieces, record_.end(place), scale);
   }
 
-  void animate(std::size_t node, const SceneBody& body, const std::vector<MotionPiece>& pieces, double end,
+  void animate(std::size_t node, const SceneBody& body, const std::vector<RecordedPiece>& pieces, double end,
                const Vector3d& scale) {
     const double last = std::min(end, scene_.end_time);
     Keys places, turns, sizes;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const MotionPiece& piece = pieces[i];
+      const RecordedPiece& piece = pieces[i];
       const double from = std::max(piece.start(), scene_.begin_time);
       const double to = i + 1 < pieces.size() ? std::min(pieces[i + 1].start(), last) : last;
       if (!(to >= from)) continue;
       const bool turning = !piece.angular_velocity.isZero(0);
-      const bool curved = turning || !piece.path.coefficients[2].isZero(0);
+      const bool curved = turning || piece.terms() > 2;
       const double parts = curved ? std::ceil((to - from) * rate_) : 1;
       // The end of a piece is the beginning of the next, unless that is elsewhere.
       const bool goes_on = i + 1 < pieces.size() && pieces[i + 1].start() <= last &&
@@ -197,14 +200,13 @@ class Exporter {
 
   /// One mesh for all bodies of a shape and colour.
   std::size_t mesh_of_body(const SceneBody& body) {
-    const std::size_t colours = 8;
-    const std::size_t colour = body.fixed ? colours : body_count_++ % colours;
+    const std::size_t colour = body.sensor ? of_sensors : body.fixed ? of_fixed : body_count_++ % colours;
     if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
-      return add_bending(*bending->script, material(colour, colours));
+      return add_bending(*bending->script, material(colour));
     }
     const auto [known, is_new] = meshes_.try_emplace(std::pair(surface_key(body.shape), colour), 0);
     if (is_new) {
-      known->second = add_mesh(surface_of(body.shape), material(colour, colours), json::array());
+      known->second = add_mesh(surface_of(body.shape), material(colour), json::array());
     }
     return known->second;
   }
@@ -230,18 +232,19 @@ class Exporter {
     return add_mesh(surface, material, std::move(targets));
   }
 
-  /// Quiet blues and greens; what is fixed is grey, and one looks through it.
-  std::size_t material(std::size_t colour, std::size_t fixed) {
+  /// Quiet blues and greens. One looks through what is fixed, which is grey, and through sensors, which are violet.
+  std::size_t material(std::size_t colour) {
     const auto [known, is_new] = materials_.try_emplace(colour, 0);
     if (!is_new) return known->second;
-    const double part = static_cast<double>(colour) / static_cast<double>(fixed);
+    const double part = static_cast<double>(colour) / static_cast<double>(colours);
     json look = {{"pbrMetallicRoughness",
                   {{"baseColorFactor", {0.1 + 0.15 * part, 0.45 - 0.25 * part, 0.35 + 0.25 * part, 1}},
                    {"metallicFactor", 0},
                    {"roughnessFactor", 0.6}}},
                  {"doubleSided", true}};
-    if (colour == fixed) {
-      look["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.5, 0.5, 0.3};
+    if (colour >= colours) {
+      auto& rgba = look["pbrMetallicRoughness"]["baseColorFactor"];
+      rgba = colour == of_fixed ? json{0.5, 0.5, 0.5, 0.3} : json{0.35, 0.15, 0.6, 0.25};
       look["alphaMode"] = "BLEND";
     }
     return known->second = document_.add("materials", std::move(look));

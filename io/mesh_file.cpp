@@ -150,9 +150,30 @@ MeshData read_obj(const std::filesystem::path& file) {
         mesh.fans.push_back(face.line);
       }
       mesh.triangles.insert(mesh.triangles.end(), triangles->begin(), triangles->end());
+      mesh.lines.resize(mesh.triangles.size(), face.line);
     });
   }
   return mesh;
+}
+
+/// Where a triangle of an STL file begins, in words. A binary file has 84 bytes, of which the last four are the number
+/// of its triangles, and 50 for each.
+std::string place_in_stl(const std::filesystem::path& file, std::size_t triangle) {
+  constexpr std::size_t head = 84, each = 50;
+  const std::string text = read_text(file);
+  std::uint32_t count = 0;
+  for (std::size_t k = 0; k < 4 && text.size() >= head; ++k) {
+    count |= std::uint32_t{static_cast<unsigned char>(text[head - 4 + k])} << (8 * k);
+  }
+  if (text.size() >= head && (text.size() - head) / each == count && count > 0) {
+    return "byte " + std::to_string(head + each * triangle) + ": ";
+  }
+  std::size_t facets = 0;
+  for (Lines lines(text); lines.next();) {
+    std::string_view rest = lines.line;
+    if (next_word(rest) == "facet" && facets++ == triangle) return "line " + std::to_string(lines.number) + ": ";
+  }
+  return "";
 }
 
 MeshData read_stl(const std::filesystem::path& file) {
@@ -166,7 +187,8 @@ MeshData read_stl(const std::filesystem::path& file) {
     for (unsigned f = 0; f < part.mNumFaces; ++f) {
       const aiFace& face = part.mFaces[f];
       const auto fail = [&](const char* what) {
-        throw MeshFileError("triangle " + std::to_string(mesh.triangles.size()) + ": " + what);
+        const std::size_t triangle = mesh.triangles.size();
+        throw MeshFileError(place_in_stl(file, triangle) + "triangle " + std::to_string(triangle) + ": " + what);
       };
       if (face.mNumIndices != 3) fail("has not three corners");
       std::array<std::uint32_t, 3> triangle{};
@@ -201,16 +223,17 @@ MeshData read_mesh_file(const std::filesystem::path& file) {
 
 std::vector<std::size_t> leave_out_degenerate(MeshData& mesh) {
   std::vector<std::size_t> left_out;
-  std::vector<std::array<std::uint32_t, 3>> kept;
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     if (kds::collision::is_degenerate(mesh.vertices, mesh.triangles[i])) {
       left_out.push_back(i);
-    } else {
-      kept.push_back(mesh.triangles[i]);
+      continue;
     }
+    if (!mesh.lines.empty()) mesh.lines[kept] = mesh.lines[i];
+    mesh.triangles[kept++] = mesh.triangles[i];
   }
-  if (kept.empty()) return {};
-  mesh.triangles = std::move(kept);
+  mesh.triangles.resize(kept);
+  if (!mesh.lines.empty()) mesh.lines.resize(kept);
   return left_out;
 }
 
@@ -225,11 +248,20 @@ std::vector<std::string> mend(MeshData& mesh) {
   }
   const std::size_t triangles = mesh.triangles.size();
   const std::string all = " of " + number(triangles) + (triangles == 1 ? " triangle" : " triangles");
-  if (const std::vector<std::size_t> left_out = leave_out_degenerate(mesh); left_out.size() == 1) {
-    sentences.push_back('1' + all + " is degenerate and left out, triangle " + number(left_out[0]));
+  const std::vector<std::size_t> lines = mesh.lines;
+  const std::vector<std::size_t> left_out = leave_out_degenerate(mesh);
+  // Polygons become several triangles each, so of an OBJ file the number of one says less than its line.
+  const auto place = [&] {
+    return lines.empty() ? "triangle " + number(left_out[0]) : "in line " + number(lines[left_out[0]]);
+  };
+  if (!left_out.empty() && mesh.triangles.empty()) {
+    throw MeshFileError("no triangle is left: " + number(left_out.size()) + all +
+                        (left_out.size() == 1 ? " is degenerate, " : " are degenerate, the first is ") + place());
+  }
+  if (left_out.size() == 1) {
+    sentences.push_back('1' + all + " is degenerate and left out, " + place());
   } else if (!left_out.empty()) {
-    sentences.push_back(number(left_out.size()) + all + " are degenerate and left out, the first is triangle " +
-                        number(left_out[0]));
+    sentences.push_back(number(left_out.size()) + all + " are degenerate and left out, the first is " + place());
   }
   return sentences;
 }

@@ -1,9 +1,14 @@
 // A run as a page: a self-contained HTML file that plays the motion in 3D.
 #pragma once
 
+#include "certificates/point_motion.hpp"
 #include "io/events.hpp"
 #include "io/scene.hpp"
 #include "kds/arithmetic/lattice.hpp"
+#include "kds/turning/spin.hpp"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <filesystem>
 #include <stdexcept>
@@ -17,18 +22,37 @@ struct ReplayError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A piece of a motion as it is recorded: a path of any degree that worlds have, and an orientation that turns.
+/// collision::motion_as() makes it of the motions of all worlds, exactly.
+struct RecordedPiece {
+  static constexpr int degree = 5;
+
+  kds::certificates::PointMotion<degree> path{};
+  Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< at the start
+  Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();       ///< rad/s
+
+  double start() const { return path.start; }  ///< s
+  kds::Spin spin() const { return {{angular_velocity[0], angular_velocity[1], angular_velocity[2]}, path.start}; }
+  /// How many coefficients of the path there are, without zeros at the end: of a body at rest one.
+  std::size_t terms() const;
+
+  friend const kds::certificates::PointMotion<degree>& path_of(const RecordedPiece& piece) { return piece.path; }
+};
+
 /// The motion pieces and contacts of a run: what the page needs to show any instant of it. Bodies are named by their
 /// places in a scene.
 class Record {
  public:
   void on_event(const Event& event);
   /// Pieces may come in any order of their starts; of several with one start the last counts.
-  void on_motion(std::uint32_t body, const MotionPiece& piece);
+  void on_motion(std::uint32_t body, const RecordedPiece& piece);
+  /// Drops the pieces of a body that start after a time (s).
+  void forget_after(std::uint32_t body, double time);
   /// From `time` on the body is not there.
   void on_removal(std::uint32_t body, double time);
 
   /// The pieces of a body's motion that are to be drawn, up to a thousandth of its size.
-  std::vector<MotionPiece> drawn(const Scene& scene, std::uint32_t place) const;
+  std::vector<RecordedPiece> drawn(const Scene& scene, std::uint32_t place) const;
   /// When the body is removed, `never` if it is not. Precondition, here and above: it has been recorded.
   double end(std::uint32_t place) const { return bodies_[place].end; }
 
@@ -37,7 +61,7 @@ class Record {
 
  private:
   struct Body {
-    std::vector<MotionPiece> motion;  ///< starts ascend
+    std::vector<RecordedPiece> motion;  ///< starts ascend
     double end = kds::never;
   };
   Body& body(std::uint32_t place);
@@ -45,15 +69,15 @@ class Record {
   std::vector<Body> bodies_;
   std::vector<Event> touches_;  ///< contacts, separations, overlaps, passes
   std::vector<Event> walls_;
-  std::vector<Event> rests_;    ///< contacts that begin and cease to last
+  std::vector<Event> rests_;  ///< contacts that begin and cease to last
 };
 
-/// Keeps the record of a scene's run. (Of a world of one's own: WorldRecorder, in world_recorder.hpp.)
+/// Keeps the record of a scene's run. (Of worlds of one's own: world_recorder.hpp, periodic_recorder.hpp.)
 class ReplayRecorder final : public EventSink {
  public:
   explicit ReplayRecorder(const Scene& scene);
   void on_event(const Event& event) override { record_.on_event(event); }
-  void on_motion(std::uint32_t body, const MotionPiece& piece) override { record_.on_motion(body, piece); }
+  void on_motion(std::uint32_t body, const MotionPiece& piece) override;
 
   std::string to_json(const std::string& title) const { return record_.to_json(scene_, title); }
   const Record& record() const { return record_; }

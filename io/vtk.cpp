@@ -100,8 +100,8 @@ bool is_frame(const std::filesystem::path& file) {
 struct VtkFrames::Body {
   std::shared_ptr<const Surface> surface;
   Vector3d scale;
-  std::vector<MotionPiece> pieces;  ///< starts ascend
-  double end;                       ///< s
+  std::vector<RecordedPiece> pieces;  ///< starts ascend
+  double end;                         ///< s
 };
 
 VtkFrames::VtkFrames(const Scene& scene, const Record& record) : scene_(with_plain_shapes(scene)) {
@@ -131,13 +131,13 @@ std::size_t VtkFrames::corners() const {
 
 std::string VtkFrames::at(double t) const {
   std::vector<float> places, velocities;
-  std::vector<std::int32_t> corners, ends, of_body;
+  std::vector<std::int32_t> corners, ends, of_body, of_sensor;
   for (std::size_t place = 0; place < bodies_.size(); ++place) {
     const Body& body = bodies_[place];
     const auto after = std::upper_bound(body.pieces.begin(), body.pieces.end(), t,
-                                        [](double time, const MotionPiece& piece) { return time < piece.start(); });
+                                        [](double time, const RecordedPiece& piece) { return time < piece.start(); });
     if (after == body.pieces.begin() || t >= body.end) continue;
-    const MotionPiece& piece = *(after - 1);
+    const RecordedPiece& piece = *(after - 1);
     const Eigen::Quaterniond q =
         scene_.turning ? kds::certificates::turned_orientation(piece.orientation, piece.spin(), t).normalized()
                        : scene_.bodies[place].orientation;
@@ -155,6 +155,7 @@ std::string VtkFrames::at(double t) const {
     for (std::size_t i = 0; i < surface.triangles.size() / 3; ++i) {
       ends.push_back(static_cast<std::int32_t>(3 * (ends.size() + 1)));
       of_body.push_back(static_cast<std::int32_t>(place));
+      of_sensor.push_back(scene_.bodies[place].sensor ? 1 : 0);
       append_floats(velocities, velocity);
     }
   }
@@ -168,6 +169,7 @@ std::string VtkFrames::at(double t) const {
   append_array(text, "offsets", ends);
   text += "</Polys>\n<CellData Scalars=\"body\" Vectors=\"velocity\">\n";
   append_array(text, "body", of_body);
+  append_array(text, "sensor", of_sensor);
   append_array(text, "velocity", velocities, 3);
   text += "</CellData>\n</Piece>\n</PolyData>\n";
   return file_of("PolyData", text);

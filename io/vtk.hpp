@@ -22,8 +22,9 @@ class VtkFrames {
   VtkFrames& operator=(const VtkFrames&) = delete;
 
   /// The text of a .vtp file (PolyData) of time t (s): the surfaces of the bodies that are there then, in 32-bit floats
-  /// and the units of the scene; for each triangle the place of its body in the scene, `body`, and the velocity of the
-  /// body's centre, `velocity`; and t, `TimeValue`. Where a body jumps at t, it is where it comes to.
+  /// and the units of the scene; for each triangle the place of its body in the scene, `body`, whether that is a
+  /// sensor, `sensor`, 1 or 0, and the velocity of its centre, `velocity`; and t, `TimeValue`. Where a body jumps at t,
+  /// it is where it comes to.
   std::string at(double t) const;
   /// Corners of triangles in a frame that has all bodies.
   std::size_t corners() const;

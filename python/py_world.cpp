@@ -73,6 +73,8 @@ void HeldWorld<World, Row>::advance_to(double t) {
     text << "advance_to: the time must be finite and not before now, which is " << now << ", and is " << t;
     throw std::invalid_argument(text.str());
   }
+  // The world would name the function that is called here.
+  if (running_) throw std::runtime_error("World::advance_to: must not be called from within a callback");
   run([t](World& world) {
     while (!world.advance_for(patience, t)) {
       const py::gil_scoped_acquire acquire;

@@ -1,6 +1,7 @@
 // The bodies as they are drawn.
 const still = new THREE.Color(0.05, 0.055, 0.065);   // what lies or slides on something is darker
 const red = new THREE.Color(2.6, 0.09, 0.04);   // linear; brighter than light allows, so that it glows
+const sensorColour = new THREE.Color(0.3, 0.1, 0.62);
 const chosenColour = new THREE.Color(1.5, 1.3, 0.5);
 let chosen = -1;   // number of the body that is looked at
 
@@ -33,7 +34,7 @@ const groups = new Map();
 data.bodies.forEach((body, i) => {
   const kind = body.shape === "capsule" ? `capsule ${body.size[2] / body.size[0]}` : body.shape;
   const own = body.frames ? `bending ${i}` : kind;
-  const shape = body.fixed ? `fixed ${own}` : own;
+  const shape = body.sensor ? `sensor ${own}` : body.fixed ? `fixed ${own}` : own;
   if (!groups.has(shape)) groups.set(shape, []);
   groups.get(shape).push(body);
   body.number = i;
@@ -41,6 +42,7 @@ data.bodies.forEach((body, i) => {
   const u = (i * 0.618034) % 1, v = (i * 0.381966 + 0.37) % 1;
   body.colour = new THREE.Color().setHSL(0.47 + 0.16 * u, 0.24 + 0.2 * v, 0.42 + 0.22 * ((u + v) % 1))
     .convertGammaToLinear(2.2);
+  if (body.sensor) body.colour.copy(sensorColour);
   body.scale = new THREE.Vector3(...body.size);
   if (body.shape === "capsule") body.scale.setScalar(body.size[0]);
 });
@@ -54,13 +56,18 @@ for (const bodies of groups.values()) {
   const flat = shape === "box" || (typeof shape === "number" && data.meshes[shape].triangles.length < 3 * 600);
   const material = new THREE.MeshPhongMaterial({ specular: 0x1c1c1c, shininess: 24, flatShading: flat,
     vertexColors: THREE.VertexColors, side: THREE.DoubleSide });
-  // What is fixed holds others: one looks through it at them.
-  if (bodies[0].fixed) Object.assign(material, { transparent: true, opacity: 0.18, depthWrite: false });
+  // What is fixed holds others, and sensors are around them: one looks through both.
+  if (seenThrough(bodies[0])) {
+    Object.assign(material, { transparent: true, opacity: bodies[0].sensor ? 0.3 : 0.18, depthWrite: false });
+  }
   const instances = new THREE.InstancedMesh(geometry, material, bodies.length);
   instances.frustumCulled = false;
   scene.add(instances);
   drawn.push({ bodies, instances, colours, bent: bodies[0].frames && geometry });
 }
+
+/** Whether one looks through a body. */
+function seenThrough(body) { return body.fixed || body.sensor; }
 
 const matrix = new THREE.Matrix4(), point = new THREE.Vector3(), nothing = new THREE.Vector3(0, 0, 0);
 const turned = new THREE.Quaternion();
@@ -77,9 +84,9 @@ function pose(t, fade) {
       matrix.compose(point, orientation(body, t, turned), there ? body.scale : nothing);
       instances.setMatrixAt(i, matrix);
       tint.copy(body.colour);
-      if (!body.fixed && rests(body, t)) tint.lerp(still, 0.6);
+      if (!seenThrough(body) && rests(body, t)) tint.lerp(still, 0.6);
       if (body.number === chosen) tint.lerp(chosenColour, 0.6);
-      tint.lerp(red, body.fixed ? 0 : redness(body, t, fade));
+      tint.lerp(red, body.fixed && !body.sensor ? 0 : redness(body, t, fade));
       colours.setXYZ(i, tint.r, tint.g, tint.b);
     });
     instances.instanceMatrix.needsUpdate = true;

@@ -6,6 +6,16 @@ document.title = data.title + " \u2013 replay";
 $("#head h1").textContent = data.title;
 $("#head p").textContent = number(data.bodies.length) + (data.bodies.length === 1 ? " body" : " bodies") +
   (data.response === "elastic" ? ", elastic" : ", passing through each other");
+// What colours mean, of those that there are.
+const legend = [["sensor", "sensors", body => body.sensor], ["fixed", "fixed", body => body.fixed && !body.sensor],
+  ["lying", "at rest", body => body.rests.length > 0]];
+for (const [name, text, has] of legend) {
+  if (!data.bodies.some(has)) continue;
+  const entry = document.createElement("span");
+  entry.className = name;
+  entry.textContent = text;
+  $("#legend").append(entry);
+}
 $("#count span").textContent = "of " + number(contactTimes.length) + (contactTimes.length === 1 ? " contact" : " contacts");
 
 let time = 0, playing = true, dragging = false, shown = -1, marksShown = true, said = 0;
@@ -104,7 +114,9 @@ function resize() {
   renderer.setSize(width, height, false);
   camera.aspect = width / height;
   camera.fov = 38 * Math.max(1, Math.min(2, 1.1 * height / width));
-  camera.setViewOffset(width, height, 0, 0.045 * height, width, height);   // up a little, clear of the bar
+  const top = $("#head").getBoundingClientRect().bottom, bottom = $("#bar").getBoundingClientRect().top;
+  freeHeight = Math.max(0.3, (bottom - top) / height);
+  camera.setViewOffset(width, height, 0, (height - top - bottom) / 2, width, height);
   drawChart();
 }
 window.addEventListener("resize", resize);

@@ -50,15 +50,16 @@ function distanceTo(body, t) {
   return nearest;
 }
 
-/** The body at a place of the window, in pixels, or -1. One looks through what is fixed, unless nothing else is there. */
+/** The body at a place of the window, in pixels, or -1. One looks through what is fixed and through sensors, unless
+ *  nothing else is there. */
 function bodyAt(x, y, t) {
   ray.setFromCamera(new THREE.Vector2(2 * x / window.innerWidth - 1, 1 - 2 * y / window.innerHeight), camera);
-  const best = { moving: -1, fixed: -1 }, distance = { moving: Infinity, fixed: Infinity };
+  const best = { solid: -1, clear: -1 }, distance = { solid: Infinity, clear: Infinity };
   data.bodies.forEach((body, i) => {
-    const kind = body.fixed ? "fixed" : "moving", d = distanceTo(body, t);
+    const kind = seenThrough(body) ? "clear" : "solid", d = distanceTo(body, t);
     if (d < distance[kind]) [distance[kind], best[kind]] = [d, i];
   });
-  return best.moving >= 0 ? best.moving : best.fixed;
+  return best.solid >= 0 ? best.solid : best.clear;
 }
 
 function choose(i) {
@@ -89,7 +90,7 @@ const shapeText = body => {
     : body.shape === "box" ? "box, " + body.size.map(x => +(2 * x).toPrecision(4)).join(" \u00d7 ")
     : body.shape === "capsule" ? `capsule, radius ${+body.size[0].toPrecision(4)}, length ${+(2 * body.size[2]).toPrecision(4)}`
     : (body.frames ? "mesh that bends, " : "mesh, ") + number(data.meshes[body.shape].triangles.length / 3) + " triangles";
-  return body.fixed ? text + "; fixed" : text;
+  return text + (body.fixed ? "; fixed" : "") + (body.sensor ? "; sensor" : "");
 };
 const vectorText = v => [v.x, v.y, v.z].map(x => (Math.abs(x) < 5e-7 * reach ? 0 : x).toPrecision(5)).join("  ");
 const timeText = t => (data.begin + t).toPrecision(7) + " s";

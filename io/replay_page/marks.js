@@ -58,7 +58,7 @@ function drawPath() {
     const body = data.bodies[chosen], at = new THREE.Vector3(), end = Math.min(data.duration, body.until || Infinity);
     body.motion.forEach((piece, i) => {
       const from = Math.max(0, piece[0]), to = i + 1 < body.motion.length ? body.starts[i + 1] : end;
-      const parts = piece.length > 7 ? 12 : 1;
+      const parts = piece.length > 10 ? 48 : piece.length > 7 ? 12 : 1;   // curves, parabolas, lines
       for (let k = 0; k <= parts && to >= from; ++k) {
         const c = piece, dt = from + (to - from) * k / parts - c[0];
         at.set(0, 0, 0);

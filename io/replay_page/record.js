@@ -3,8 +3,8 @@
 //
 // data: { title, begin, duration, response, domain: {min, max, walls}?, meshes: [{vertices, triangles}],
 //   bodies: [{name, shape: "sphere" | "box" | "capsule" | number of the mesh, size: [x, y, z] (of a capsule: radius,
-//             radius, half length), turn: quaternion [x, y, z, w], fixed: true or left out, until: time from which it is
-//             not there, or left out, motion: [[start, c0x, c0y, c0z, c1x, ...]...], spins: [[quaternion x, y, z, w at
+//             radius, half length), turn: quaternion [x, y, z, w], fixed: true or left out, sensor: the same, until: time
+//             from which it is not there, or left out, motion: [[start, c0x, c0y, c0z, c1x, ...]...], spins: [[quaternion x, y, z, w at
 //             the start, angular velocity x, y, z]...] of these pieces, if it turns, frames: [[time, x, y, z of the first
 //             vertex, ...]...] if it is a mesh that bends}],
 //   touches: [[time, kind (0 contact, 1 separation, 2 overlap, 10 let through), a, b, point x, y, z, normal x, y, z]...],
@@ -36,14 +36,17 @@ for (const body of data.bodies) {
   body.resting = [];    // how many contacts last after each of restTimes
   body.rests = [];      // numbers of these
 }
+/** Whether a contact of two bodies lasts until they are apart: those that bounce touch for an instant only. */
+const goesOn = (a, b) => data.response !== "elastic" || data.bodies[a].sensor || data.bodies[b].sensor;
 const contactTimes = [];
 data.touches.forEach(([time, kind, a, b], number) => {
   if (kind === contact) contactTimes.push(time);
+  const watched = data.bodies[a].sensor || data.bodies[b].sensor;
   for (const i of a === b ? [a] : [a, b]) {
     data.bodies[i].touches.push(number);
     const body = data.bodies[i], before = body.touching.length ? body.touching[body.touching.length - 1] : 0;
-    // Bodies that bounce touch for an instant only; others go through each other and stay red until they are apart.
-    const after = data.response === "elastic" ? 0 : Math.max(0, before + (kind === separation ? -1 : 1));
+    if (watched && !body.sensor) continue;   // The sensor is red, what it reports goes on as it was.
+    const after = goesOn(a, b) ? Math.max(0, before + (kind === separation ? -1 : 1)) : 0;
     body.touchTimes.push(time);
     body.touching.push(after);
   }
@@ -116,13 +119,13 @@ function velocity(body, t, to) {
   return to.set(x, y, z);
 }
 
-/** The others that a body is in contact with at time t, where bodies pass through each other. */
+/** The others that a body is in contact with at time t: those that it passes through, and sensors. */
 function partners(i, t) {
-  if (data.response === "elastic") return [];
   const together = new Set();
   for (const number of data.bodies[i].touches) {
     const [time, kind, a, b] = data.touches[number];
     if (time > t) break;
+    if (!goesOn(a, b)) continue;
     if (kind === separation) together.delete(a === i ? b : a); else together.add(a === i ? b : a);
   }
   return [...together];

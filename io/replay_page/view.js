@@ -83,13 +83,14 @@ scene.add(rim);
 
 const camera = new THREE.PerspectiveCamera(38, 1, reach / 200, reach * 40);
 let controls;
+let freeHeight = 1;   // the part of the window's height that title and bar leave free; the view is in its middle
 
 /** Puts the camera where the whole box is seen, from the direction in which it looks, or from the usual one. */
 function fit(fromWhere) {
   const from = (fromWhere || camera.position.clone().sub(controls.target)).clone().normalize();
   const back = from.clone(), right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
   const above = new THREE.Vector3().crossVectors(back, right);
-  const tall = Math.tan(camera.fov * Math.PI / 360) * 0.82, wide = tall * camera.aspect;   // clear of bar and title
+  const half = Math.tan(camera.fov * Math.PI / 360), tall = half * freeHeight * 0.96, wide = half * camera.aspect * 0.84;
   let distance = reach / 10;
   const corner = new THREE.Vector3();
   for (let k = 0; k < 8; ++k) {

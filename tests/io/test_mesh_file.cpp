@@ -1,4 +1,6 @@
 #include "io/mesh_file.hpp"
+
+#include "collision/shapes/mesh.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 #include <Eigen/Geometry>
@@ -6,8 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
+#include <map>
+#include <random>
 #include <string>
+#include <vector>
 
 namespace test_mesh_file {
 
@@ -95,7 +101,7 @@ TEST_CASE("mesh file: coordinates of an STL file that are not finite are refused
   const std::string bad =
       "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 " + coordinate + " 0\nvertex 0 1 0\nendloop\nendfacet\n";
   const auto file = folder.write("a.stl", "solid s\n" + good + bad + "endsolid s\n");
-  CHECK_THROWS_WITH(read_mesh_file(file), "triangle 1: has a coordinate that is not finite");
+  CHECK_THROWS_WITH(read_mesh_file(file), "line 9: triangle 1: has a coordinate that is not finite");
 }
 
 TEST_CASE("mesh file: lines end in LF, CR or both, and go on after a backslash, and a mark of UTF-8 is passed over") {
@@ -148,9 +154,115 @@ TEST_CASE("mesh file: faces that cross themselves are fans") {
   CHECK(mesh.fans == std::vector<std::size_t>{6});
   CHECK(mend(mesh) == std::vector<std::string>{"a face crosses itself and is cut as a fan, in line 6"});
   mesh = read_mesh_file(folder.write("a.obj", square + "f 1 4 2 3\n\nf 2 3 2 4 1\nf 3 1 2 3 1 2\nf 1 2 2\n"));
-  CHECK(mend(mesh) ==
-        std::vector<std::string>{"2 faces cross themselves and are cut as fans, the first is in line 5",
-                                 "3 of 8 triangles are degenerate and left out, the first is triangle 4"});
+  CHECK(mend(mesh) == std::vector<std::string>{"2 faces cross themselves and are cut as fans, the first is in line 5",
+                                               "3 of 8 triangles are degenerate and left out, the first is in line 8"});
+}
+
+TEST_CASE("mesh file: a mesh of which no triangle is left is refused") {
+  const TemporaryFolder folder;
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 2 0 0\n";
+  MeshData mesh = read_mesh_file(folder.write("a.obj", vertices + "f 1 2 3\n"));
+  CHECK_THROWS_WITH(mend(mesh), "no triangle is left: 1 of 1 triangle is degenerate, in line 4");
+  mesh = read_mesh_file(folder.write("a.obj", vertices + "f 1 1 3\n\nf 1 2 3\n"));
+  CHECK_THROWS_WITH(mend(mesh), "no triangle is left: 2 of 2 triangles are degenerate, the first is in line 4");
+}
+
+TEST_CASE("mesh file: a binary STL file is refused with the byte of its triangle") {
+  const TemporaryFolder folder;
+  std::string binary(80, ' ');
+  const auto append = [&binary](auto value) { binary.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  append(std::uint32_t{3});
+  for (int triangle = 0; triangle < 3; ++triangle) {
+    for (int k = 0; k < 12; ++k) append(triangle == 2 && k == 7 ? INFINITY : float(k * k));
+    append(std::uint16_t{0});
+  }
+  CHECK_THROWS_WITH(read_mesh_file(folder.write("a.stl", binary)),
+                    "byte 184: triangle 2: has a coordinate that is not finite");
+}
+
+TEST_CASE("mesh file: the defects of ordinary models, at random") {
+  const TemporaryFolder folder;
+  for (std::uint32_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    std::mt19937 random(seed);
+    const std::string end = seed % 2 == 0 ? "\r\n" : "\n";
+    std::string text = "# cells of a plane" + end;
+    std::size_t line = 1, vertices = 0, without_area = 0, first_without_area = 0;
+    std::map<std::size_t, double> areas;  // by line
+    const auto vertex = [&](double x, double y) {
+      text += "v " + std::to_string(x) + ' ' + std::to_string(y) + " 0" + end;
+      ++line;
+      return ++vertices;
+    };
+    // Corners are told as others tell them: with normals that are there or not, or counted from the end.
+    const auto face = [&](const std::vector<std::size_t>& corners, double area) {
+      text += 'f';
+      const auto style = random() % 4;
+      for (const std::size_t corner : corners) {
+        text += ' ';
+        text += style == 0 ? '-' + std::to_string(vertices + 1 - corner) : std::to_string(corner);
+        if (style == 1) text += "//" + std::to_string(corner);
+        if (style == 2) text += "/1/1";
+      }
+      text += end;
+      areas[++line] = area;
+      if (area == 0 && without_area++ == 0) first_without_area = line;
+    };
+    for (int cell = 0; cell < 30; ++cell) {
+      const double x = 2 * (cell % 6), y = 2 * (cell / 6);
+      const std::size_t a = vertex(x, y), b = vertex(x + 1, y), c = vertex(x + 1, y + 1), d = vertex(x, y + 1);
+      switch (random() % 8) {
+        case 0:
+          face({a, b, c, d}, 1);
+          break;  // a quad
+        case 1:
+          face({a, b, c}, 0.5), face({a, c, d}, 0.5);
+          break;
+        case 2:
+          face({a, b, b, c, d}, 1);
+          break;   // a corner twice
+        case 3: {  // one vertex in two places of the list, a corner in an edge
+          const std::size_t again = vertex(x, y), between = vertex(x + 0.5, y);
+          face({again, between, b, c, d}, 1);
+          break;
+        }
+        case 4: {  // a hole, connected with the outline by an edge
+          const std::size_t p = vertex(x + 0.25, y + 0.25), q = vertex(x + 0.25, y + 0.75),
+                            r = vertex(x + 0.75, y + 0.75), s = vertex(x + 0.75, y + 0.25);
+          face({a, b, c, d, a, p, q, r, s, p}, 0.75);
+          break;
+        }
+        case 5:
+          face({a, b, c, d}, 1), face({a, b, a}, 0);
+          break;
+        case 6: {  // a sliver, all in a line
+          const std::size_t between = vertex(x + 0.5, y);
+          face({a, between, b}, 0), face({a, b, c, d}, 1);
+          break;
+        }
+        default: {  // many corners, not convex
+          const std::size_t inner = vertex(x + 0.5, y + 0.5), other = vertex(x + 0.5, y + 1);
+          face({a, inner, b, c, other, d}, 0.75);
+        }
+      }
+    }
+    MeshData mesh = read_mesh_file(folder.write("a.obj", text));
+    REQUIRE(mesh.lines.size() == mesh.triangles.size());
+    const std::vector<std::string> said = mend(mesh);
+    REQUIRE(mesh.lines.size() == mesh.triangles.size());
+    std::map<std::size_t, double> left;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const auto& [a, b, c] = mesh.triangles[i];
+      const Eigen::Vector3d &o = mesh.vertices[a], &p = mesh.vertices[b], &q = mesh.vertices[c];
+      left[mesh.lines[i]] += 0.5 * (p - o).cross(q - o)[2];
+    }
+    for (const auto& [number, area] : areas) CHECK(left[number] == Approx(area).margin(1e-12));
+    CHECK_NOTHROW(kds::collision::Mesh(mesh.vertices, mesh.triangles));
+    if (without_area == 0) continue;
+    REQUIRE(said.size() == 1);
+    CHECK_THAT(said[0], Catch::Contains("degenerate and left out"));
+    CHECK(std::stoul(said[0].substr(said[0].rfind(' ') + 1)) <= first_without_area);
+  }
 }
 
 TEST_CASE("mesh file: files that are no mesh") {

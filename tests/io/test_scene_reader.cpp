@@ -173,13 +173,13 @@ TEST_CASE("scene reader: degenerate triangles of a mesh file are left out, and w
   const Scene one = read("f 1 2 3\nf 1 2 4\n");
   CHECK(one.meshes[0].mesh->triangles().size() == 1);
   const std::string where = (folder / "scene.json").string() + ": meshes.m.file: m.obj: ";
-  CHECK(one.warnings == std::vector<std::string>{where + "1 of 2 triangles is degenerate and left out, triangle 1"});
+  CHECK(one.warnings == std::vector<std::string>{where + "1 of 2 triangles is degenerate and left out, in line 6"});
   CHECK(read("f 1 2 3\nf 1 1 2\nf 2 3 4\nf 1 2 4\n").warnings ==
-        std::vector<std::string>{where + "2 of 4 triangles are degenerate and left out, the first is triangle 1"});
-  CHECK_THROWS_WITH(read("f 1 2 4\n"), where + "triangle 0: is degenerate, its corners lie in a line");
+        std::vector<std::string>{where + "2 of 4 triangles are degenerate and left out, the first is in line 6"});
+  CHECK_THROWS_WITH(read("f 1 2 4\n"), where + "no triangle is left: 1 of 1 triangle is degenerate, in line 5");
   CHECK(read("f 2 3 4 1\nf 3 1 2 3 1 2\n").warnings ==
         std::vector<std::string>{where + "a face crosses itself and is cut as a fan, in line 6",
-                                 where + "2 of 5 triangles are degenerate and left out, the first is triangle 2"});
+                                 where + "2 of 5 triangles are degenerate and left out, the first is in line 6"});
 }
 
 TEST_CASE("scene reader: a shape is placed about its pivot") {

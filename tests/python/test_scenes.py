@@ -139,7 +139,7 @@ class Scenes(unittest.TestCase):
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
         with open(self.path("spoilt.obj"), "w") as file:
             file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 2\nf 1 2 3\n")
-        with self.assertWarnsRegex(UserWarning, "spoilt.obj: 1 of 2 triangles is degenerate and left out, triangle 0"):
+        with self.assertWarnsRegex(UserWarning, "spoilt.obj: 1 of 2 triangles is degenerate and left out, in line 4"):
             kds.read_mesh(self.path("spoilt.obj"))
         scene = (
             '{"scene": 1, "end_time": 1, "response": "none", "meshes": {"m": {"file": "spoilt.obj"}}, "bodies":'

@@ -252,7 +252,7 @@ class Callbacks(unittest.TestCase):
         world.on(kds.EventKind.CONTACT, nested)
         world.advance_to(10)
         self.assertEqual(len(refused), 3)
-
+        self.assertEqual(refused[0], "World::advance_to: must not be called from within a callback")
 
     def test_a_world_that_its_functions_hold_is_collected(self):
         world = kds.World()

@@ -96,6 +96,7 @@ void write(const std::string& name, const std::vector<Conjunction>& found) {
 
 int main(int argc, char** argv) {
   try {
+    if (jobs::asks_for_help(argc, argv)) return std::cout << usage, EXIT_SUCCESS;
     const Arguments arguments = parse(argc, argv);
     const std::vector<Conjunction> found = run(arguments);
     std::cout << arguments.objects << " objects, " << arguments.screening.hours << " h: " << found.size()

@@ -1,4 +1,5 @@
 // Drones around a mast: proved free, with the least clearance, or their first contact (docs/free_trajectory.md).
+#include "examples/jobs/arguments.hpp"
 #include "examples/jobs/free_trajectory/proof.hpp"
 #include "examples/jobs/free_trajectory/scene.hpp"
 
@@ -15,6 +16,11 @@
 namespace {
 
 using namespace free_trajectory;
+
+constexpr const char* usage =
+    "usage: free_trajectory [DRONES [SEED [GAPS.csv]]]\n"
+    "Proves that DRONES (8) on random paths (SEED, 1) around a mast meet nothing, then finds where one meets a cable.\n"
+    "GAPS.csv is written: how far that one is from the cable around that time.\n";
 
 constexpr double rate = 100;  // Hz, of the check by sampling
 constexpr int phases = 10;    // of it that are tried
@@ -51,9 +57,10 @@ void write_gaps(const std::string& name, const Scene& scene, double time) {
 
 int main(int argc, char** argv) {
   try {
-    if (argc > 4) throw std::invalid_argument("usage: free_trajectory [DRONES [SEED [GAPS.csv]]]");
-    const std::size_t drones = argc > 1 ? std::stoul(argv[1]) : 8;
-    const std::uint64_t seed = argc > 2 ? std::stoull(argv[2]) : 1;
+    if (jobs::asks_for_help(argc, argv)) return std::cout << usage, EXIT_SUCCESS;
+    if (argc > 4) throw std::invalid_argument(std::string(argv[4]) + ": there are three arguments at most");
+    const std::size_t drones = argc > 1 ? jobs::whole_number("DRONES", argv[1]) : 8;
+    const std::uint64_t seed = argc > 2 ? jobs::whole_number("SEED", argv[2]) : 1;
     Scene scene = swarm_at_mast(drones, seed);
     prove("around the mast", scene);
     constexpr double time = 12.405;  // s, between two samples
@@ -61,7 +68,7 @@ int main(int argc, char** argv) {
     prove("with a cable", scene);
     if (argc > 3) write_gaps(argv[3], scene, time);
   } catch (const std::exception& error) {
-    std::cerr << "free_trajectory: " << error.what() << '\n';
+    std::cerr << "free_trajectory: " << error.what() << '\n' << usage;
     return EXIT_FAILURE;
   }
 }

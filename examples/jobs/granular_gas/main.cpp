@@ -34,14 +34,6 @@ struct Arguments {
   std::string csv;
 };
 
-std::uint64_t whole(const std::string& option, const std::string& text) {
-  const double value = jobs::number(option, text);
-  if (!(value >= 0 && value <= 0x1p53 && value == std::floor(value))) {
-    throw std::invalid_argument(option + ": " + text + " is not a whole number >= 0");
-  }
-  return static_cast<std::uint64_t>(value);
-}
-
 Arguments parse(int argc, char** argv) {
   Arguments arguments;
   int first = 1;
@@ -52,7 +44,7 @@ Arguments parse(int argc, char** argv) {
     if (i + 1 == argc) throw std::invalid_argument(option + ": a value is missing");
     const std::string value = argv[i + 1];
     if (option == "--balls") {
-      arguments.gas.balls = whole(option, value);
+      arguments.gas.balls = jobs::whole_number(option, value);
     } else if (option == "--packing" && arguments.what != "equation") {
       arguments.gas.packing = jobs::number(option, value);
     } else if (option == "--size-ratio") {
@@ -62,10 +54,10 @@ Arguments parse(int argc, char** argv) {
     } else if (option == "--shear-rate") {
       arguments.gas.shear_rate = jobs::number(option, value);
     } else if (option == "--collisions") {
-      arguments.collisions = double(whole(option, value));
+      arguments.collisions = double(jobs::whole_number(option, value));
       if (arguments.collisions == 0) throw std::invalid_argument("--collisions: must be > 0");
     } else if (option == "--seed") {
-      arguments.gas.seed = whole(option, value);
+      arguments.gas.seed = jobs::whole_number(option, value);
     } else if (option == "--csv" && arguments.what != "speed") {
       arguments.csv = value;
     } else {
@@ -200,6 +192,7 @@ void run_speed(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   try {
+    if (jobs::asks_for_help(argc, argv)) return std::cout << usage, EXIT_SUCCESS;
     const Arguments arguments = parse(argc, argv);
     if (arguments.what == "gas") {
       run_gas(arguments);
