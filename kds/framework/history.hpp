@@ -42,7 +42,7 @@ class History {
   /// As Simulator::step().
   bool step(double limit = forever) {
     if (step_to_event(limit)) return true;
-    // Structures may have done work that they had put off, and later edits then come after it.
+    // Structures may have taken up edits in it, apart from those that come later.
     Call* const last = last_call();
     if (!last || last->edit || (!last->ended && limit < last->limit)) {
       calls_.push_back({.limit = limit, .ended = true});

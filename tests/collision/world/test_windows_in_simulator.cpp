@@ -163,6 +163,7 @@ TEST_CASE("Worlds and structures in one simulator have the events that each has 
     INFO(setting);
     Four four(setting);
     std::uint64_t steps = 0;
+    CHECK_FALSE(four.simulator->step(0));  // Bodies enter, and no event comes of it.
     for (;; ++steps) {
       const double next = four.simulator->next_time();
       if (!four.simulator->step(end)) break;
@@ -265,8 +266,8 @@ TEST_CASE("Edits of worlds in a simulator make no steps of their own, and are re
       CHECK(four.told() == expected->first);
       CHECK(history.events() == expected->second);
     }
-    CHECK(expected->first.bouncing.size() > 40);
-    CHECK(expected->first.passing.size() > 40);
+    CHECK(expected->first.bouncing.size() > 20);
+    CHECK(expected->first.passing.size() > 10);
   }
 }
 
