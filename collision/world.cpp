@@ -120,13 +120,13 @@ double BasicWorld<Motion>::next_time() const {
 }
 
 template <class Motion>
-void BasicWorld<Motion>::process() {
-  engine_->process();
+bool BasicWorld<Motion>::process() {
+  return engine_->process();
 }
 
 template <class Motion>
-void BasicWorld<Motion>::extend_horizon(double now, double horizon) {
-  engine_->extend_horizon(now, horizon);
+void BasicWorld<Motion>::extend_horizon(double /*now*/, double horizon) {
+  engine_->extend_horizon(horizon);
 }
 
 template <class Motion>

@@ -151,14 +151,17 @@ class BasicWorld final {
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
   // it is changed it has to be advanced to that clock, if nothing is due there.
 
-  /// The time of the next event, `never` if there is none within the horizon; now() if bodies have been added or
+  /// The time of the next event, `never` if none is found within the horizon; now() if bodies have been added or
   /// changed there, and the consequences are not known yet. Nothing that can be observed changes: the result of the
   /// search is kept for the next step, and the search is repeated if the world is changed before that time, at the cost
-  /// of adding all bodies. Throws as step() does.
+  /// of adding all bodies. Throws as step() does, also std::invalid_argument where step() needs a limit and the horizon
+  /// is `never`.
   double next_time() const;
-  /// Processes what is due at next_time(). Throws as step() does.
-  void process();
-  /// Predicts events up to the horizon. Throws std::logic_error as step() does.
+  /// Processes what is due at next_time(). False if no event has come of it: then the consequences of changes by the
+  /// caller have been found out. Throws as step() does.
+  bool process();
+  /// From then on next_time() looks for events up to the horizon, which is `never` at first; how far they are predicted
+  /// at a time is in WorldOptions::window. Throws std::logic_error as step() does. O(1).
   void extend_horizon(double now, double horizon);
   /// As audit(), at a time from now() on before which nothing is due.
   void audit(double t) const;

@@ -55,8 +55,9 @@ struct Walls {
 /// How a world is simulated: its clock, its broad phase, and what contacts do.
 struct WorldOptions {
   double start_time = 0;  ///< s; keep it near 0: event times are rounded to doubles, which are sparse far from it
-  /// s, > 0; how far ahead events are predicted at a time. A step without a limit that finds nothing within one more
-  /// window looks at all time to come, and so do all steps from then on.
+  /// s, > 0; how far ahead events are predicted at a time. It makes no difference to events, in a Simulator either,
+  /// whose window is another matter. A step without a limit that finds nothing within one more window looks at all time
+  /// to come, and so do all steps from then on.
   double window = never;
   Response response = Response::none;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;

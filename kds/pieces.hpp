@@ -55,11 +55,8 @@ class Pieces final : private MovingSet<E>::Observer {
   /// Pieces still to come.
   std::size_t planned(Id id) const { return id < plans_.size() ? plans_[id].size() : 0; }
 
-  /// Time of the next seam within the horizon, `never` if there is none.
-  double next_time() const {
-    if (queue_.empty() || queue_.top().time > horizon_) return never;
-    return queue_.top().time;
-  }
+  /// Time of the next seam, `never` if there is none.
+  double next_time() const { return queue_.empty() ? never : queue_.top().time; }
 
   /// Makes the change of motion due at next_time(), unless a listener of an event of that time removes the element.
   /// Precondition: there is one.
@@ -76,7 +73,7 @@ class Pieces final : private MovingSet<E>::Observer {
     elements_.update(id, piece.motion, time);
   }
 
-  void extend_horizon(double /*now*/, double horizon) { horizon_ = horizon; }
+  void extend_horizon(double /*now*/, double /*horizon*/) {}  // All seams are known.
 
   /// Throws AuditFailure if a piece is not scheduled at its start, or should have started before now.
   void audit(double now) const {
@@ -93,9 +90,8 @@ class Pieces final : private MovingSet<E>::Observer {
   template <class Archive>
   void archive(Archive& archive) {
     archive.tag("Pieces");
-    archive(plans_, horizon_, counters_);
+    archive(plans_, counters_);
     if constexpr (Archive::loading) {
-      archive.require(!std::isnan(horizon_), "a horizon is not a number");
       for (const auto& plan : plans_) {
         for (std::size_t i = 0; i < plan.size(); ++i) {
           archive.require(std::isfinite(plan[i].start) && (i == 0 || plan[i].start > plan[i - 1].start),
@@ -146,7 +142,6 @@ class Pieces final : private MovingSet<E>::Observer {
   std::vector<std::vector<Piece>> plans_;
   DefaultEventQueue queue_;
   Counters counters_;
-  double horizon_ = never;
   bool processing_ = false;
 };
 

@@ -18,11 +18,17 @@ namespace kds {
 
 /// A structure that keeps certificates true.
 ///
-/// Semantic laws: (1) next_time() is the least failure time among its certificates that is not beyond its horizon,
-/// `never` if there is none; (2) process() repairs what failed at next_time() and certifies the new neighbours, with
-/// failure times not before it; (3) between events the state is exactly that of its motions at t+; (4) audit(t)
-/// checks law 3 against the motions with exact signs and throws AuditFailure; (5) extend_horizon(now, horizon) makes
-/// law 1 hold for a later horizon.
+/// Semantic laws: (1) next_time() is the least failure time among its certificates, if that is not beyond its horizon;
+/// otherwise it is `never` or some time beyond the horizon; (2) process() repairs what failed at next_time() and
+/// certifies the new neighbours, with failure times not before it; (3) between events the state is exactly that of its
+/// motions at t+; (4) audit(t) checks law 3 against the motions with exact signs and throws AuditFailure; (5) the
+/// horizon is `never` at first, and extend_horizon(now, horizon) makes law 1 hold for another one, which may be nearer
+/// too; the one that it has costs nothing.
+///
+/// A structure that keeps no failure times to save work has the horizon `never` all the time, and its extend_horizon()
+/// does nothing. One that puts work off, such as the consequences of edits, is due for it: its process() returns a
+/// bool, false if it has done such work and no event has come of it. Then next_time() is later, or the next call gives
+/// true.
 template <class S>
 concept KineticStructure = requires(S& structure, const S& observed, double t) {
   { observed.next_time() } -> std::convertible_to<double>;
@@ -33,6 +39,9 @@ concept KineticStructure = requires(S& structure, const S& observed, double t) {
 };
 
 /// Runs structures side by side: events in (time, structure, slot) order, structures in the order of the arguments.
+///
+/// The horizon is the simulator's: it is the same for all structures, which are told of it when the simulator is made
+/// and whenever it changes. What a structure knows of later times makes no difference.
 ///
 /// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
 /// on top of the structure's own work. All times are in seconds.
@@ -48,12 +57,14 @@ class Simulator {
   /// Throws std::runtime_error where arithmetic is not that of arithmetic/strict.hpp.
   explicit Simulator(double now, Structures&... structures) : structures_(structures...), now_(now) {
     require_strict_arithmetic("Simulator");
+    set_horizon(never);
   }
 
   double now() const { return now_; }
   double horizon() const { return horizon_; }
 
-  /// Time of the next event within the horizon, `never` if there is none.
+  /// Time of the next event within the horizon, `never` if there is none. The clock, if a structure has put off work: a
+  /// step does that first.
   double next_time() const { return next().first; }
 
   /// Keeps only events up to `window` seconds ahead. Whenever the clock goes beyond, the structures certify again for
@@ -67,14 +78,15 @@ class Simulator {
   }
 
   /// Processes the next event if it is not later than `limit`; the clock moves to it. If there is none: false, and the
-  /// clock stays where it is.
+  /// clock stays where it is. Work that structures have put off until then is done on the way.
   bool step(double limit = never) {
-    if (limit > horizon_) look_ahead(limit);
-    const auto [time, index] = next();
-    if (!(time <= limit) || time == never) return false;
-    now_ = time;
-    process(index, std::index_sequence_for<Structures...>{});
-    return true;
+    for (;;) {
+      if (limit > horizon_) look_ahead(limit);
+      const auto [time, index] = next();
+      if (!(time <= limit) || time == never) return false;
+      now_ = time;
+      if (process(index, std::index_sequence_for<Structures...>{})) return true;
+    }
   }
 
   /// Processes all events up to and including t and sets the clock to t. Throws std::invalid_argument for a t before
@@ -132,12 +144,25 @@ class Simulator {
           ((s.next_time() < first.first ? void(first = {s.next_time(), index}) : void(), ++index), ...);
         },
         structures_);
-    return first;
+    // A structure may know of events beyond the horizon, where others do not know of theirs.
+    return first.first <= horizon_ ? first : std::pair{never, std::size_t{0}};
   }
 
+  /// Whether there was an event.
   template <std::size_t... I>
-  void process(std::size_t index, std::index_sequence<I...>) {
-    ((I == index ? std::get<I>(structures_).process() : void()), ...);
+  bool process(std::size_t index, std::index_sequence<I...>) {
+    return ((I == index && process(std::get<I>(structures_))) || ...);
+  }
+  template <class Structure>
+  static bool process(Structure& structure) {
+    if constexpr (requires {
+                    { structure.process() } -> std::same_as<bool>;
+                  }) {
+      return structure.process();
+    } else {
+      structure.process();
+      return true;
+    }
   }
 
   /// Certifies window by window until an event is known or the horizon covers the limit.

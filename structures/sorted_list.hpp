@@ -258,6 +258,7 @@ void SortedList<Degree, Listener>::process() {
 
 template <int Degree, SwapListener Listener>
 void SortedList<Degree, Listener>::extend_horizon(double now, double horizon) {
+  if (horizon == schedule_.horizon()) return;
   schedule_.set_horizon(horizon);
   for (std::size_t i = 0; i < order_.size(); ++i) {
     if (schedule_.concerned(static_cast<Slot>(i))) certify(i, now);

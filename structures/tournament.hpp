@@ -115,6 +115,7 @@ class Tournament {
 
   /// See KineticStructure. O(n) failure times.
   void extend_horizon(double now, double horizon) {
+    if (horizon == schedule_.horizon()) return;
     schedule_.set_horizon(horizon);
     for (std::size_t node = 1; node < capacity_; ++node) certify(node, now);
   }

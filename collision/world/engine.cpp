@@ -42,6 +42,19 @@ void require_ahead(const char* function, double t, double now) {
                               std::to_string(now) + ")");
 }
 
+/// Throws for a search up to the end of time, if events may go on until then.
+template <class Motion>
+void require_end(const char* function, double until, BroadPhaseKind broad_phase, const char* end) {
+  if (until < never) return;
+  const std::string called = std::string(function) + ": ", needs = std::string(", so it needs ") + end;
+  if (broad_phase == BroadPhaseKind::sap) {
+    throw std::invalid_argument(called + "sweep and prune by frames has no last event" + needs);
+  }
+  if (turns<Motion>) {
+    throw std::invalid_argument(called + "bodies that turn may come near each other for ever" + needs);
+  }
+}
+
 }  // namespace
 
 template <class Motion>
@@ -125,12 +138,7 @@ bool Engine<Motion>::step(double limit) {
     return false;
   }
   if (std::isnan(limit)) throw std::invalid_argument("World::step: the limit is not a number");
-  if (limit == never && options_.broad_phase == BroadPhaseKind::sap) {
-    throw std::invalid_argument("World::step: sweep and prune by frames has no last event, so it needs a limit");
-  }
-  if (turns<Motion> && limit == never) {
-    throw std::invalid_argument("World::step: bodies that turn may come near each other for ever, so it needs a limit");
-  }
+  require_end<Motion>("World::step", limit, options_.broad_phase, "a limit");
   if (limit < clock_.now) {  // next_time() has found that nothing happens until then.
     callers_now_ = std::max(callers_now_, limit);
     return false;
@@ -307,26 +315,28 @@ double Engine<Motion>::next_time() {
   require_idle("World::next_time");
   if (next_time_ != -never) return next_time_;
   if (clock_.now == callers_now_ && work_left()) return callers_now_;
-  if (clock_.horizon == never && options_.broad_phase == BroadPhaseKind::sap) {
-    throw std::invalid_argument("World::next_time: sweep and prune by frames has no last event, so it needs a window");
-  }
-  next_time_ = guarded_event(clock_.horizon, Search::looks) ? clock_.now : never;
+  require_end<Motion>("World::next_time", looked_for_until_, options_.broad_phase, "a simulator with a window");
+  next_time_ = guarded_event(looked_for_until_, Search::looks) ? clock_.now : never;
   return next_time_;
 }
 
+/// What follows from the event at its own time is found out at once. So the next event is known afterwards, and it
+/// makes no difference whether callers look for it before they change something.
 template <class Motion>
-void Engine<Motion>::process() {
+bool Engine<Motion>::process() {
   const double t = next_time();
-  if (t < never) step(t);
+  if (t == never) return false;
+  const bool happened = step(t);
+  if (work_left() && reports_.empty() && guarded_event(callers_now_, Search::looks)) next_time_ = clock_.now;
+  return happened;
 }
 
+/// How far events are predicted at a time is the world's own affair: Clock::horizon.
 template <class Motion>
-void Engine<Motion>::extend_horizon(double now, double horizon) {
+void Engine<Motion>::extend_horizon(double horizon) {
   require_idle("World::extend_horizon");
-  if (now > callers_now_) advance_to(now);
-  idle_until_ = next_time_ = -never;
-  idle_for_ever_ = false;
-  change_or_fail([&] { set_horizon(horizon); });
+  if (next_time_ == never && horizon > looked_for_until_) next_time_ = -never;
+  looked_for_until_ = horizon;
 }
 
 template <class Motion>

@@ -87,8 +87,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool step(double limit);
   bool advance_for(double budget_seconds, double t);
   double next_time();
-  void process();
-  void extend_horizon(double now, double horizon);
+  bool process();
+  void extend_horizon(double horizon);
   void audit(double t) const;
 
   double now() const { return stepping_ ? clock_.now : callers_now_; }
@@ -389,13 +389,13 @@ class Engine final : private RestingListener<BodyMotionType> {
   EditLimit edits_;
   /// When advance_for() is to return. Until then work that may be much at one instant is done in small parts.
   std::optional<WallClock::time_point> deadline_;
-  std::size_t expected_ = 0;    ///< the broad phase has been told of the bodies in slots below this
-  double callers_now_;          ///< the clock as callers know it
-  double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
-  bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
-  double next_time_ = -never;   ///< the result of next_time(); -never if there is none
-  /// The body that has bounced off a wall and whose motion the parts have not taken up yet, while that is reported: it
-  /// is often removed then.
+  std::size_t expected_ = 0;         ///< the broad phase has been told of the bodies in slots below this
+  double callers_now_;               ///< the clock as callers know it
+  double looked_for_until_ = never;  ///< the horizon of a simulator: later events need not be found by next_time()
+  double idle_until_ = -never;       ///< nothing is due before it; an edit resets it
+  bool idle_for_ever_ = false;       ///< no event comes at all; an edit resets it
+  double next_time_ = -never;        ///< the result of next_time(); -never if there is none
+  /// The body that has bounced off a wall, while that is reported: if it is not removed, parts take up its motion then.
   BodySlot bounced_ = no_body;
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown

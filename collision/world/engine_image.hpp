@@ -38,7 +38,7 @@ void check_orientations([[maybe_unused]] const typename Bodies<Motion>::Image& b
 /// none of this but the timers.
 template <class Motion>
 struct Engine<Motion>::Image {
-  double now = 0, callers_now = 0, horizon = 0;
+  double now = 0, callers_now = 0, horizon = 0, looked_for_until = never;
   bool room_for_meshes = false;
   WorldCounters counters;
   EditLimit edits;
@@ -53,7 +53,7 @@ struct Engine<Motion>::Image {
 
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-    archive(now, callers_now, horizon, room_for_meshes, counters, edits);
+    archive(now, callers_now, horizon, looked_for_until, room_for_meshes, counters, edits);
     bodies.archive(archive, known);
     archive(timers);
     if (!bodies.lent()) archive(scripts, tumbling, pairs, self_contacts, resting, pending);
@@ -64,6 +64,7 @@ struct Engine<Motion>::Image {
   void check(const WorldOptions& options) const {
     if (!std::isfinite(now)) image::fail("now: is not finite");
     if (!image::is_to_come(horizon, now)) image::fail("horizon: is before now");
+    if (std::isnan(looked_for_until)) image::fail("looked_for_until: is not a number");
     if (!std::isfinite(callers_now) || callers_now > now) image::fail("clock: is after now, or not finite");
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);

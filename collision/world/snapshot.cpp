@@ -16,7 +16,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 12;
+constexpr int snapshot_form = 13;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -57,6 +57,7 @@ typename Engine<Motion>::Image Engine<Motion>::image() const {
   return {.now = clock_.now,
           .callers_now = callers_now_,
           .horizon = clock_.horizon,
+          .looked_for_until = looked_for_until_,
           .room_for_meshes = volumes_.has_room_for_meshes(),
           .counters = counters(),
           .edits = edits_,
@@ -88,6 +89,7 @@ void Engine<Motion>::become(const Image& image) {
   const auto change = [&] {
     clock_ = {image.now, image.horizon};
     callers_now_ = image.callers_now;
+    looked_for_until_ = image.looked_for_until;
     idle_until_ = next_time_ = -never;
     idle_for_ever_ = false;
     edits_ = image.edits;

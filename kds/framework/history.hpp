@@ -39,24 +39,25 @@ class History {
     keep();
   }
 
-  /// As Simulator::step(). A step for which there is no event is not recorded.
+  /// As Simulator::step().
   bool step(double limit = forever) {
-    keep_now_and_then();
-    if (!simulator_.step(limit)) return false;
-    if (calls_.size() > kept_.back().calls && calls_.back().steps > 0 && calls_.back().limit == limit) {
-      ++calls_.back().steps;
+    if (step_to_event(limit)) return true;
+    // Structures may have taken up edits in it, apart from those that come later.
+    Call* const last = last_call();
+    if (!last || last->edit || (!last->ended && limit < last->limit)) {
+      calls_.push_back({.limit = limit, .ended = true});
     } else {
-      calls_.push_back({limit, 1, {}});
+      last->limit = std::max(last->limit, limit);
+      last->ended = true;
     }
-    ++events_;
-    return true;
+    return false;
   }
   /// As Simulator::advance_to(), which throws for a t that is not finite or before the clock.
   void advance_to(double t) {
-    while (std::isfinite(t) && t >= simulator_.now() && step(t)) {
+    while (std::isfinite(t) && t >= simulator_.now() && step_to_event(t)) {
     }
     simulator_.advance_to(t);
-    calls_.push_back({t, 0, {}});
+    calls_.push_back({.limit = t, .edit = [&simulator = simulator_, t] { simulator.advance_to(t); }});
   }
   /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock, but must not move it. f is kept as
   /// long as it may be replayed, and everything that it refers to must live as long. If it throws, what it did before
@@ -64,7 +65,7 @@ class History {
   void edit(std::function<void()> f) {
     keep_now_and_then();
     f();
-    calls_.push_back({simulator_.now(), 0, std::move(f)});
+    calls_.push_back({.limit = simulator_.now(), .edit = std::move(f)});
   }
 
   /// Events from the beginning to the present state. Those that were rolled back do not count, and those that an edit
@@ -107,11 +108,12 @@ class History {
   }
 
  private:
-  /// An edit at time `limit`, so many steps up to it, or (neither) an advance to it.
+  /// An edit at time `limit`, an advance of the clock to it without events, or steps up to it.
   struct Call {
     double limit;
-    std::uint64_t steps;
-    std::function<void()> edit;
+    std::uint64_t steps = 0;          ///< that found an event
+    bool ended = false;               ///< whether one more step found none
+    std::function<void()> edit = {};  ///< makes the edit or the advance
   };
   struct Kept {
     double time;
@@ -121,6 +123,23 @@ class History {
   };
 
   static constexpr double forever = std::numeric_limits<double>::infinity();
+
+  /// The last one since the last snapshot.
+  Call* last_call() { return calls_.size() > kept_.back().calls ? &calls_.back() : nullptr; }
+
+  /// A step, which is recorded if it finds an event.
+  bool step_to_event(double limit) {
+    keep_now_and_then();
+    if (!simulator_.step(limit)) return false;
+    Call* const last = last_call();
+    if (last && last->steps > 0 && !last->ended && last->limit == limit) {
+      ++last->steps;
+    } else {
+      calls_.push_back({.limit = limit, .steps = 1});
+    }
+    ++events_;
+    return true;
+  }
 
   void keep_now_and_then() {
     if (events_ - kept_.back().events + calls_.size() - kept_.back().calls >= every_) keep();
@@ -142,13 +161,14 @@ class History {
     calls_.resize(from.calls);
     const detail::RaisedFlag replaying(replaying_);
     for (Call& call : calls) {
-      if (call.steps > 0) {
-        std::uint64_t done = 0;
-        while (done < call.steps && events_ < events && step(std::min(call.limit, t))) ++done;
-        if (done < call.steps) break;
-      } else {
+      if (call.edit) {
         if (call.limit > t) break;
-        call.edit ? edit(std::move(call.edit)) : advance_to(call.limit);
+        edit(std::move(call.edit));
+      } else {
+        std::uint64_t done = 0;
+        while (done < call.steps && events_ < events && step_to_event(std::min(call.limit, t))) ++done;
+        if (done < call.steps) break;
+        if (call.ended) step(std::min(call.limit, t));
       }
     }
   }

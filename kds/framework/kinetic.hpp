@@ -376,6 +376,7 @@ bool Kinetic<Rule, Listener, Queue, Solver>::failed(Slot slot, const Choice& cho
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double horizon) {
+  if (horizon == schedule_.horizon()) return;
   alone(now, [&] {
     schedule_.set_horizon(horizon);
     for (Slot slot = 0; slot < held_.size(); ++slot) {
