@@ -19,9 +19,9 @@ inline std::size_t threads_for(std::size_t items, std::size_t most) {
   return std::min(items / items_per_thread, most);
 }
 
-/// Calls work(i) for each i in [0, tasks), in so many threads, of which this is one; a thread that has done one takes the
-/// next. No task may depend on what another one changes. Returns when all are done; if some threw, throws the exception
-/// of the lowest of them.
+/// Calls work(i) for each i in [0, tasks), in so many threads, of which this is one; a thread that has done one takes
+/// the next. No task may depend on what another one changes. Returns when all are done; if some threw, throws the
+/// exception of the lowest of them.
 template <class Work>
 void in_turn(std::size_t tasks, std::size_t threads, const Work& work) {
   std::vector<std::exception_ptr> failures(tasks);

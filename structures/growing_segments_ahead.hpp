@@ -54,7 +54,8 @@ inline TrackBox GrowingSegmentsRule::box_of(Id id, const Element& element) const
 /// later one if these are too few.
 inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repair) {
   const Element& element = repair[id];
-  // What comes after an event of now comes after the double before.
+  // An event at the double `now` happens between the double before and `now`. So what comes after it may come before
+  // `now`.
   const double now = after ? std::nextafter(repair.now(), -never) : repair.now();
   const double begin = std::max(now, element.path.start);
   std::vector<Next> found;

@@ -39,8 +39,8 @@ namespace kds::structures {
 /// Papers: [Basch99], [Guibas04]; [Edelsbrunner96] for weights; [Devillers11]. Certificates of degree 5 for linear, 10
 /// for quadratic paths. Sampled paths are not supported: for them zero is no sign.
 ///
-/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9 of
-/// them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
+/// Cost, where most vertices have some 15 neighbours: an event is a flip, O(1) certificates (responsive: 21 marked, 9
+/// of them in-sphere tests; more where a neighbourhood is built anew); 20 n certificates (compact: 13 n facets, 7 n
 /// volumes); an element is in some 100 (not local in the worst case); every event is a change of the triangulation,
 /// except where a facet or edge of the hull turns, or a hidden point moves on (efficient). Insertion O(n^(1/3)) for the
 /// walk and O(neighbours); removal O(neighbours); a new motion that keeps the tetrahedra around it O(neighbours), any

@@ -12,9 +12,9 @@
 
 namespace kds::collision {
 
-/// The lowest place of a shape, exactly: of a box the sum of its rounded half axes, of a hull or a mesh a vertex that is
-/// turned by its rounded matrix, the products not rounded. Of several that are equally low the first. The points of a
-/// capsule's and a ball's radius count as if the normal were exactly of unit length.
+/// The lowest place of a shape, exactly: of a box the sum of its rounded half axes, of a hull or a mesh a vertex that
+/// is turned by its rounded matrix, the products not rounded. Of several that are equally low the first. The points of
+/// a capsule's and a ball's radius count as if the normal were exactly of unit length.
 ///
 /// Cost: in proportion to the corners of a hull; to the logarithm of the triangles of a mesh, and to those of them that
 /// are as low as doubles can tell, whose places are compared in exact arithmetic.

@@ -138,7 +138,8 @@ MovedBy moved_by(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, B
   return moves || has_script(bodies, scripts, slot) ? MovedBy::itself : MovedBy::nothing;
 }
 
-/// How far from its centre a body reaches, or the farthest of what is attached to it or it to.
+/// The radius of the ball about the centre of a body that holds it; where bodies are attached to each other, all of
+/// these.
 template <class Motion>
 double reach(const Bodies<Motion>& bodies, BodySlot slot) {
   const BodySlot mover = mover_of(bodies, slot);

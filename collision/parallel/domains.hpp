@@ -61,7 +61,7 @@ class Domains {
   std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
   /// There are no domains any more, and the world of each process has all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
-  /// There are no domains any more, and where the bodies are the caller will say.
+  /// Ends the domains without bringing their bodies together. The caller then puts other bodies into the stores.
   void leave();
 
   // saved_parts.cpp

@@ -318,7 +318,7 @@ template <class Motion>
 void Engine<Motion>::take_out(BodySlot slot) {
   if (bounced_ == slot) bounced_ = no_body;
   resting_.forget(slot);
-  if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
+  if (self_contacts_.touching(slot)) {  // Reports the separation, or nothing if the overlap has not been reported yet.
     const BodyId id = bodies_.id_of(slot);
     if (!reports_.take_back(Reports::Kind::overlap, id, id)) {
       reports_.add(Reports::Kind::separation, id, id, self_contacts_.contact(slot));

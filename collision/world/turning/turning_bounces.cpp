@@ -34,8 +34,9 @@ double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) c
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
 }
 
-/// What is pressed together flies for a while, and what would stick parts, if ever so slowly: else the two would meet
-/// without end.
+/// The speed with which two bodies part that have approached each other. Bodies that are pressed together part fast
+/// enough for a flight of WorldOptions::shortest_flight. Bodies that would stick part with a small share of the speed
+/// of approach. Otherwise the two would meet endlessly at one instant.
 template <class Motion>
 double Engine<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
   constexpr double least = 0x1p-26;  // of the speed of approach
@@ -71,7 +72,8 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
     normal_turns = cross(motion_b.angular_velocity, n);
   }
   double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
-  // And what falls together will be pressed together when one of them lies on something.
+  // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
+  // each of them would press if the other were at rest counts too.
   for (const Motion* motion : {&motion_a, &motion_b}) {
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
@@ -200,7 +202,8 @@ void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion&
   look(a, back_a, piece_a), look(b, back_b, piece_b);
   const double free = parting(motion_a, motion_b);
   const double led = parting(back_a, back_b);
-  // Ways back that differ for two neighbours of a body would lead it to and fro: after many contacts at once, none.
+  // If two neighbours led a body back in different ways it could go to and fro endlessly. So after many contacts at one
+  // instant nothing is led back.
   const auto often = [&](BodySlot slot) {
     return bodies_.fixed(slot) || bodies_[slot].meetings > options_.zeno.contacts;
   };

@@ -95,7 +95,7 @@ void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
 template <class Motion>
 bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
   if (resting_ == 0 || !(carries(a) || carries(b))) return false;
-  // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
+  // What touches a resting body gently may come to lie on it. Until that is known the body goes on resting.
   const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
                       (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
                       calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);

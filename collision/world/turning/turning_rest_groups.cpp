@@ -114,8 +114,9 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::without(const Group& gr
 }
 
 /// Bodies that are farthest from balance are left out until what is left is in balance: first those that do not rest
-/// yet. Of what rests those are left out that cannot carry one that is left out. One that leans on a busy body, or on
-/// one that is left out and does so, says nothing of what else it touches.
+/// yet. Of what rests those are left out that cannot carry one that is left out. A body that leans on a busy one,
+/// directly or through others that are left out, may be out of balance for that reason alone. So when it is left out,
+/// the resting bodies that it touches stay.
 template <class Motion>
 typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, bool removed) const {
   const auto leave = [&](std::vector<char> out) {
