@@ -92,8 +92,8 @@ class BasicWorld final {
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
-  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now() is
-  /// taken up now, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
+  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now()
+  /// replaces the motion, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
   void update_motion(BodyId id, std::span<const Motion> pieces);
 
   /// Adds pieces of motion after those that are still to come: so a stream of pieces needs no more than the next ones.

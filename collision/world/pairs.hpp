@@ -38,7 +38,7 @@ struct Pair {
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
   bool alive = false;
   bool listed = false;  ///< by the broad phase, or by Unbounded
-  bool dirty = false;   ///< to be tested
+  bool dirty = false;   ///< its contact time has to be computed anew
   bool fresh = false;   ///< one of the bodies has entered or jumped at this instant
   /// In contact, in mode `none`; in the modes that resolve contacts, let pass. Its next event is that they separate.
   bool overlapping = false;
@@ -118,7 +118,7 @@ class Pairs final : public PairListener {
   /// A body has another motion, or has jumped. prefetch() may be called before.
   void motion_changed(BodySlot id, bool jumped);
   void prefetch(BodySlot id) const;
-  /// A body has another box, and moves as before.
+  /// A body has another box, and its motion is unchanged.
   void box_changed(BodySlot id);
   /// The next contact of the two has to be found anew.
   void changed(BodySlot a, BodySlot b);
@@ -141,7 +141,7 @@ class Pairs final : public PairListener {
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
   void remove(BodySlot id);
 
-  /// Tests dirty pairs, all or so many of them.
+  /// Tests dirty pairs: `most` of them, or all if there are no more.
   void test(std::size_t most = ~std::size_t{0});
   bool tested() const { return dirty_.empty(); }
 
@@ -174,7 +174,7 @@ class Pairs final : public PairListener {
   /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
-  /// All of it, as plain data, in the order of (a, b).
+  /// The whole state as plain data, in the order of (a, b).
   struct Image {
     struct One {
       Pair pair;
