@@ -41,7 +41,7 @@ Vector3d Engine<Motion>::surface_velocity(BodySlot a, BodySlot b, const Contact&
 }
 
 /// The speed at which a body leaves a mesh that bends, after it has approached with `approach`, or parted if that is
-/// negative. It is so much at least that bounces take time, and leave the tolerance within which contacts are found.
+/// negative. It is at least so high that bounces take time and leave the tolerance within which contacts are found.
 /// Nothing rests on such a mesh: what lies on it bounces in flights of WorldOptions::shortest_flight.
 template <class Motion>
 double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact& contact, double approach,

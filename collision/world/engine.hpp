@@ -127,8 +127,7 @@ class Engine final : private RestingListener<BodyMotionType> {
     BodySlot a, b;
     double passes_at;
   };
-  /// Whether all later events are decided by the descriptions, scripts and progress of bodies and by the pairs that
-  /// overlap.
+  /// Whether descriptions, scripts and progress of bodies, and the pairs that overlap, decide all later events.
   bool is_divisible() const;
   const Scripts<Motion>& scripts() const { return scripts_; }
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
@@ -151,8 +150,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void note_meeting(BodySlot slot) { resting_.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
   bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
-  /// For worlds that only store bodies, each world a part of them: bodies as plain data. `meshes`: all meshes of the
-  /// scene.
+  /// Bodies of a world that only stores a part of them, as plain data. `meshes`: all meshes of the scene.
   Parcel<Motion> pack(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
   /// Stores those of a parcel, with their numbers; attach() follows. Returns the slots, in the same order.
   std::vector<BodySlot> store(const Parcel<Motion>& parcel);
@@ -390,8 +388,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   double idle_until_ = -never;  ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;  ///< no event comes at all; an edit resets it
   double next_time_ = -never;   ///< the result of next_time(); -never if there is none
-  /// While a bounce off a wall is reported: the body that has bounced, whose new motion the parts do not know yet,
-  /// since the listener often removes it.
+  /// While a bounce off a wall is reported: the body, whose new motion the parts do not know yet, as it is often
+  /// removed.
   BodySlot bounced_ = no_body;
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown
