@@ -1,4 +1,4 @@
-// What is lowest of a shape along a normal.
+// The lowest part of a shape along a normal.
 #pragma once
 
 #include "certificates/half_space_separation.hpp"
@@ -34,7 +34,8 @@ class LowestOfShape {
   double height_;
 };
 
-/// The part of a shape that is lowest, as supporting_feature() has it; of meshes too: of several triangles the first.
+/// The lowest part of a shape as a feature, as from supporting_feature(); for meshes too: of several triangles the
+/// first.
 SupportingFeature lowest_feature(const PlacedShape& shape, const Eigen::Vector3d& normal);
 
 }  // namespace kds::collision
