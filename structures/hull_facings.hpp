@@ -77,7 +77,7 @@ class HullFacings {
   /// What is stored of a facet or edge: the number of the coordinate that decides, with the sign of the way.
   int stored(Facet f) const { return way_[f]; }
 
-  /// Decided by what is stored. O(facets of the hull), no arithmetic.
+  /// Decided by the stored directions. O(facets of the hull), no arithmetic.
   bool goes_round_once(const TetrahedronMesh& mesh) const {
     struct Edge {
       Id from, to;

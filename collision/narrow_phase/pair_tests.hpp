@@ -1,4 +1,4 @@
-// The seam at which kinds of shapes meet: what is asked of a pair of them, as a table.
+// The tests of pairs of shapes, as a table over the kinds of both.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -125,7 +125,8 @@ class PairTable {
   }
 
   std::array<std::array<PairTests<Motion>, kinds>, kinds> tests_{};
-  /// Which have been added: whether a pointer to a function is null is no constant under sanitizers (g++ 12).
+  /// Which tests have been added. (With sanitizers g++ 12 does not compare a pointer to a function with null in
+  /// constants.)
   std::array<std::array<bool, kinds>, kinds> given_{};
 };
 
