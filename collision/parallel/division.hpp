@@ -65,7 +65,7 @@ struct Division {
   double greatest_radius = 0;     ///< of bodies that have owners
   double greatest_speed = 0;      ///< of these, along an axis, at the beginnings of motions
   double greatest_bend = 0;       ///< of these: half an acceleration, along an axis
-  double largest_guided = never;  ///< how far bodies reach that have owners though no other body moves them
+  double largest_guided = never;  ///< greatest radius of bodies that have owners though no other body moves them
   double bulge = 0;               ///< how far a path may leave the chord between two of its places within a window
   const SlotsByNumber* slots = nullptr;  ///< of the bodies that are stored; null where they are numbers
   DomainSets sets{partition.size()};
@@ -198,7 +198,7 @@ DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, 
 
 namespace detail {
 
-/// How far bodies that move by themselves may reach if they are to have owners. If all of them had owners, windows of a
+/// The greatest radius with which bodies that move by themselves have owners. If all of them had owners, windows of a
 /// scene with a large one would be short; so those that are larger than all bodies that others move have none, unless
 /// they are many.
 template <class Motion>

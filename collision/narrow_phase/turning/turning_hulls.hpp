@@ -21,8 +21,8 @@ namespace kds::collision {
 /// products of an edge of a and an edge of b. Direction k, taken so that it points from b to a, is the way 2 k, and
 /// from a to b the way 2 k + 1. What is exact of these ways is in TurningTriangles and TurningTriangleAndBox.
 ///
-/// `slack`: how much deeper than nothing they may be in each other and still count as apart. With a slack, what is said
-/// is right to some roundings alone.
+/// `slack`: how deep they may be in each other and still count as apart. With a slack the answers are right only up to
+/// some roundings.
 template <int Degree, class HullB>
 class TurningHulls {
  public:
@@ -159,7 +159,7 @@ class TurningHulls {
       visit(Widest{2 * k + 1, gaps[1], n});
     }
   }
-  /// Along which they are the farthest apart.
+  /// The way along which they are farthest apart.
   Widest widest(const Seen& seen) const {
     Widest best;
     every_gap(seen, [&](const Widest& way) {

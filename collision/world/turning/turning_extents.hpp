@@ -1,4 +1,4 @@
-// How far a body that turns reaches about its centre.
+// The extents of a body that turns about its centre.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
