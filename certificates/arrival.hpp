@@ -18,7 +18,8 @@ namespace kds::certificates {
 ///     tip        track(t) - end(t), on an axis on which the end moves: the two face each other on one line
 ///     beginning  track(start) - end(t), on that axis: the end follows on the line of the other
 ///
-/// Only `tip` says that there is a track where the end comes to: of the others it is the line or the point alone.
+/// The sign tells only that the end has come to that line, tip or beginning. Whether the track covers that place is for
+/// the structure to find out.
 struct Arrival {
   static constexpr int degree = 1;
   enum class At : std::uint8_t { line, tip, beginning };

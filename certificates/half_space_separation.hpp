@@ -14,8 +14,8 @@
 namespace kds::certificates {
 
 /// What is lowest of a body along a normal, seen from its centre: a point of it, as it is turned and scaled, less the
-/// half widths of segments about the point and a radius. Any of these may be nothing: no segment, a radius or a scale of
-/// 0.
+/// half widths of segments about the point and a radius. Any of these may be nothing: no segment, a radius or a scale
+/// of 0.
 struct LowestPlace {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   Eigen::Vector3d point = Eigen::Vector3d::Zero();

@@ -21,7 +21,8 @@ inline constexpr int dimensions<PlaneMotion<Degree>> = 2;
 template <int Degree>
 inline constexpr int dimensions<PointMotion<Degree>> = 3;
 
-/// sign (b(t) - a(t)) >= 0, for two coordinates. Order is the same of motions that last; these are made on the spot.
+/// sign (b(t) - a(t)) >= 0, for two coordinates. It stores its motions, since they are computed where it is made; Order
+/// only refers to motions, which have to outlive it.
 template <int Degree>
 struct OnSide {
   static constexpr int degree = Degree;

@@ -74,7 +74,7 @@ struct BasicBodyDescription {
   /// response/inertia.hpp accepts. If neither is given, or 0: that of a solid with the shape and mass, whose centre of
   /// mass must be at the origin of the shape, up to inertia_tolerance of its radius. If contacts move the body and its
   /// moments differ (not is_spherical()), it precesses (docs/turning.md): the angular velocity of a motion is then that
-  /// at the time when the body takes the motion up, and the least moment must be at least 2^-40 of the greatest.
+  /// at the time when the body begins the motion, and the least moment must be at least 2^-40 of the greatest.
   Inertia inertia{};
   bool fixed = false;  ///< infinite mass: no other body changes its motion
   /// In [0, 1]: the speed after a contact over that before. Of two bodies, or a body and the walls, the lower counts.

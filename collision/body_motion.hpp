@@ -17,7 +17,7 @@ struct AnyArchive {};  ///< stands for archives in a concept
 /// moves.
 ///
 /// 1. path_of(motion), found where the motion is declared, is the path of the centre: the point about which shapes are
-///    placed. Its start is that of the whole motion, which is valid from then on. The path of a PointMotion is the
+///    placed. It starts when the whole motion does, which is valid from then on. The path of a PointMotion is the
 ///    motion itself.
 /// 2. finite(): all numbers are finite, and they describe a motion.
 /// 3. restarted(t) starts at t and continues this one, up to the rounding of its numbers; its path is the path of this

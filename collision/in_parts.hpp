@@ -10,8 +10,8 @@
 
 namespace kds::collision {
 
-/// How many threads to use for this many items, at most `most` (0: as many as the machine has): so many that the work
-/// of each is worth starting it.
+/// How many threads to use for this many items, at most `most` (0: as many as the machine has), so that each has enough
+/// work to be worth its start.
 inline std::size_t threads_for(std::size_t items, std::size_t most) {
   constexpr std::size_t items_per_thread = 4096;  // some 0.1 us each; to begin and end a thread takes some 50 us
   if (most == 1 || items < 2 * items_per_thread) return 1;
@@ -19,9 +19,9 @@ inline std::size_t threads_for(std::size_t items, std::size_t most) {
   return std::min(items / items_per_thread, most);
 }
 
-/// Calls work(i) for each i in [0, tasks), in so many threads, of which this is one; a thread that has done one takes the
-/// next. No task may depend on what another one changes. Returns when all are done; if some threw, throws the exception
-/// of the lowest of them.
+/// Calls work(i) for each i in [0, tasks) in up to `threads` threads, of which this is one; a thread that has finished
+/// a task takes the next. No task may depend on what another one changes. Returns when all are done; if some threw,
+/// throws the exception of the lowest of them.
 template <class Work>
 void in_turn(std::size_t tasks, std::size_t threads, const Work& work) {
   std::vector<std::exception_ptr> failures(tasks);

@@ -18,7 +18,7 @@ enum class Work : std::size_t {
 };
 
 /// CPU seconds, by kind of work, of the thread that calls change_to(). Each instant is charged to one kind, that of the
-/// innermost work; time is added up when the kind changes. Reading the clock costs some 0.3 us.
+/// innermost work. Reading the clock costs some 0.3 us.
 class Profile {
  public:
   /// Up to the last change of work.

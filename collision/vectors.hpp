@@ -15,7 +15,7 @@ using certificates::norm;
 using certificates::normalized;
 using certificates::squared_norm;
 
-/// In one fixed order, as those.
+/// The sum is taken in one fixed order, as in those.
 inline double norm(const Eigen::Quaterniond& q) {
   return std::sqrt((q.x() * q.x() + q.z() * q.z()) + (q.y() * q.y() + q.w() * q.w()));
 }

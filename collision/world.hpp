@@ -92,8 +92,8 @@ class BasicWorld final {
   /// not finite or starts after now().
   void update_motion(BodyId id, const Motion& motion);
 
-  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now() is
-  /// taken up now, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
+  /// The same for a motion in pieces, each starting later than the one before: the last that has started by now()
+  /// replaces the motion, as above, and those after it are to come. Throws, naming the piece, as add_body() does.
   void update_motion(BodyId id, std::span<const Motion> pieces);
 
   /// Adds pieces of motion after those that are still to come: so a stream of pieces needs no more than the next ones.
@@ -145,7 +145,9 @@ class BasicWorld final {
   /// Processes events up to t until this much time of the wall clock has passed, but at least one, or a small part of
   /// the work before it: bodies that enter, pairs to test and what the broad phase does in between come in parts of
   /// less than a millisecond, as a rule. True if t was reached. The log is that of advance_to(), whatever the budgets.
-  /// What is not divided: a listener, a heap that comes to rest, a search with an end of a window in it. Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a number.
+  /// Three kinds of work are not divided, and may exceed the budget: a call of a listener, a heap that comes to rest,
+  /// and predictions beyond the end of a window. Throws as advance_to() does, and std::invalid_argument for a budget
+  /// that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before

@@ -33,9 +33,9 @@ using TimerId = std::uint64_t;
 template <class Motion>
 class BasicWorld;
 
-/// Told of events in order of time, and of those at one time in an order that does not depend on the broad phase:
-/// bodies come by their slots, and those that were in one slot by their generations (body_rank). What follows from an
-/// event, or from what callers do, comes before the next event, in this order:
+/// Its functions are called for events in the order of their times. The order of events at one time does not depend on
+/// the broad phase either: bodies come by their slots, and bodies that had one slot by their generations (body_rank).
+/// What follows from an event, or from what callers do, comes before the next event, in this order:
 /// 1. `rebound_suppressed`, `wakes`, `passes`, `rests`, each by (a, b), then `moved` and `piece`, by body; resting
 ///    contacts that begin and end at one instant are not reported;
 /// 2. `pair_began` and `pair_ended`, by (a, b); volumes that part and meet again at one instant are not reported;
@@ -77,8 +77,8 @@ class BasicWorldListener {
   /// Two bodies pass through each other until they have separated: no motion keeps them apart (a piston), their
   /// meetings do not end, or a callback has left them approaching.
   virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
-  /// The motion of a body has changed that is not one of the event's: resting contacts pass on what happens to others,
-  /// and a body that precesses begins its next piece.
+  /// The motion of a body has changed that takes no part in the event: resting contacts pass on what happens to other
+  /// bodies, and a body that precesses begins its next piece.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
   /// With WorldOptions.report_pieces: a piece of a body's motion has started that is not the first, or that made it
   /// enter.

@@ -30,7 +30,8 @@ void validate(const WorldOptions& options) {
   if (!(options.shortest_flight > 0)) throw std::invalid_argument("WorldOptions.shortest_flight: must be > 0");
   constexpr double least_error = 0x1p-30;
   if (!(options.orientation_error >= least_error && options.orientation_error <= 0.125)) {
-    throw std::invalid_argument("WorldOptions.orientation_error: must be from " + detail::power_text(least_error) + " to 0.125 rad");
+    throw std::invalid_argument("WorldOptions.orientation_error: must be from " + detail::power_text(least_error) +
+                                " to 0.125 rad");
   }
   if (options.walls) {
     const Walls& walls = *options.walls;

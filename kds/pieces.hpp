@@ -1,4 +1,4 @@
-// Piecewise motion: elements that take up another motion at known times.
+// Piecewise motion: elements whose motion changes at known times.
 #pragma once
 
 #include "kds/audit.hpp"

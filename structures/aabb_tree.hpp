@@ -54,8 +54,8 @@ struct NoPairListener {
 /// Keeps a bounding-volume tree over moving elements, and the pairs whose boxes in it overlap.
 ///
 /// An element, a point or a MovingBox (whose paths have axis(d), or are values where Dimension is 1), is in a *fat box*
-/// at rest that is a little larger. The certificates state that it is still inside, two for each axis; when one fails
-/// the element gets a new fat box around its place then. The tree and the pairs are of fat boxes, so nothing else
+/// at rest that is a little larger. Two certificates for each axis state that it is still inside; when one fails the
+/// element gets a new fat box around its place at that time. The tree and the pairs are of fat boxes, so nothing else
 /// changes. Papers: [Bergen97] for trees of boxes that move, [Weller06] for kinetic ones. Differs from the latter:
 /// there the boxes of a tree of constant shape move with their elements, and a certificate states which element is the
 /// extreme one of a node. That suits deforming meshes, whose neighbours stay neighbours; fat boxes at rest suit
@@ -67,7 +67,8 @@ struct NoPairListener {
 ///
 /// Law: the pairs are those whose fat boxes overlap, and so include all whose elements do (`meet()`). Boxes that touch
 /// overlap. Reports alternate for each pair, beginning with pair_began, at the times at which fat boxes change; for one
-/// change the ends come first, and each are in the order of the other's id. Loading a snapshot reports nothing.
+/// change the pairs that end come first, and both lists are in the order of the other element's id. Loading a snapshot
+/// reports nothing.
 template <MovingElement E, std::size_t Dimension, class PairListener = NoPairListener>
 class AabbTreeRule {
  public:

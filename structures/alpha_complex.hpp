@@ -135,7 +135,7 @@ class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
     return other ? Effect::external : Effect::internal;
   }
   Effect follow(std::span<const TriangleChange> changes, Pen& repair);
-  /// Its triangles have been followed already.
+  /// Nothing is left to do: the changes of its triangles have been followed already.
   void change(Id id, Pen& repair);
   std::tuple<std::vector<EdgeChange>, std::vector<AlphaTriangleChange>> changes_from_nothing() const;
 
@@ -172,7 +172,7 @@ class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
     return this->inner().edges().contains(edge) && (empty_.contains(edge) || triangles_beside(edge) > 0);
   }
 
-  /// None of the outer side of an edge of the hull.
+  /// None on the outer side of an edge of the hull.
   Choice condition(Slot slot, const MovingSet<Path>& x, double sign) const {
     const Delaunay& delaunay = this->inner();
     const auto [a, b, c] = slot % 4 == 3 ? corners_of(slot / 4) : corners_beside(slot / 4, slot % 4 % 2);
@@ -183,7 +183,7 @@ class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
     }
     return Outside{delaunay.place(a, x), delaunay.place(b, x), delaunay.place(c, x), sign};
   }
-  /// Of the conditions whose slots begin with this one.
+  /// For Selection: whether a condition is met, of those whose slots begin with this one.
   auto meets(Slot first, const Pen& repair) const {
     return [this, first, &repair](std::size_t i) {
       return repair.sign(condition(first + static_cast<Slot>(i), repair.elements(), 1)) >= 0;
@@ -197,7 +197,7 @@ class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
       small_.let_go(triangle);
     }
   }
-  /// When its triangles have been taken up.
+  /// To be called after the triangles beside the edge have been looked at.
   void look_at_edge(Edge edge, Pen& repair) {
     if (this->inner().edges().contains(edge) && triangles_beside(edge) == 0) {
       empty_.look(edge, meets(4 * edge, repair));
@@ -205,7 +205,7 @@ class AlphaComplexRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
       empty_.let_go(edge);
     }
   }
-  /// Whether the complex has changed.
+  /// Looks at a triangle again. Returns whether the complex has changed.
   bool take_up_triangle(Triangle triangle, Pen& repair) {
     repair.certify(4 * triangle + 3);
     const auto report = [&](EdgeChange::What what, Triangle number, const std::array<Id, 3>& corners) {

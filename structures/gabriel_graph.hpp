@@ -88,7 +88,7 @@ class GabrielGraphRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
     }
     return other ? Effect::external : Effect::internal;
   }
-  /// Its triangles have been followed already.
+  /// Nothing is left to do: the changes of its triangles have been followed already.
   void change(Id id, Pen& repair) {
     if (!this->inner().mesh().contains(id)) return;
     this->inner().mesh().for_each_from(id, [&](TriangleMesh::Edge h) {
@@ -148,7 +148,7 @@ class GabrielGraphRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
       return !outside || repair.sign(*outside) > 0;
     };
   }
-  /// Whether the graph has changed.
+  /// Looks at an edge again. Returns whether the graph has changed.
   bool take_up(Edge edge, Pen& repair) {
     repair.certify(2 * edge);
     repair.certify(2 * edge + 1);

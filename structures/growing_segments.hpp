@@ -20,8 +20,8 @@
 namespace kds::structures {
 
 /// The end of a segment that begins where its path does, at the path's start, which may be still to come, and grows
-/// along it. A segment that grows at both ends is two of these, with opposite velocities. A `whole` one is all of its
-/// line, always: a border.
+/// along it. A segment that grows at both ends is two of these, with opposite velocities. A `whole` one is its whole
+/// line at all times: a border.
 struct GrowingEnd {
   static constexpr int degree = 1;
   certificates::PlaneMotion<1> path;
@@ -50,15 +50,15 @@ struct GrowingStop {
 /// other's track reaches from the start of its path to where it has stopped, that point included. Two ends that come to
 /// one point at one time both stop. What comes first is decided exactly, also between times that are equal as doubles.
 /// An end that is inserted does not stop those that have passed the point already; a pair that crosses then grows on,
-/// both. On one line ends stop where they face each other, or at another's beginning. What has stopped stays, also when
-/// what stopped it goes; an end with a new motion begins anew.
+/// both. On one line ends stop where they face each other, or at another's beginning. An end that has stopped stays
+/// where it is, also when the segment that stopped it is removed; an end with a new motion begins anew.
 ///
 /// Each growing end has one certificate, that it has not reached the next line that another will have crossed before
 /// it. When it has, either the other has stopped short of there, and the next line takes its place (an internal event),
-/// or the end stops (external). An end keeps the next four in order; those are sought in a tree of the boxes of tracks
-/// (TrackBox), which grow, up to a time that is far enough. Cost: to insert an end, and for one event in four, the
-/// ways through the tree to those near by, O(log n) where tracks are short against the whole; O(n) for an end that
-/// comes to fewer than five others; O(1) for other events; O(n) steps without arithmetic to remove an end. n
+/// or the end stops (external). An end keeps the next four arrivals in order. They are searched in a tree of the boxes
+/// of tracks (TrackBox), which grow, up to a time that is far enough ahead. Cost: to insert an end, and for one event
+/// in four, the ways through the tree to those near by, O(log n) where tracks are short against the whole; O(n) for an
+/// end that comes to fewer than five others; O(1) for other events; O(n) steps without arithmetic to remove an end. n
 /// certificates (compact, local). All tracks that an end would cross on its way if none stopped are events, internal
 /// ones.
 class GrowingSegmentsRule {
@@ -124,7 +124,7 @@ class GrowingSegmentsRule {
   static int order(const Arrival& a, const Arrival& b) {
     return sign_after(certificates::ArrivesFirst{a, b}, a.end.start);
   }
-  /// Whether it is still to come, for an end that may be still to begin.
+  /// Whether the arrival is still to come; the end itself may still be to begin.
   static bool is_ahead(const Arrival& arrival, double now) {
     return sign_after(arrival, std::max(now, arrival.end.start)) > 0;
   }
@@ -133,8 +133,8 @@ class GrowingSegmentsRule {
     const int sign = order(a.arrival, b.arrival);
     return sign > 0 || (sign == 0 && a.at < b.at);
   }
-  /// Whether an end surely comes to the line of another later than at a time, or never. By balls, so that of nearly all
-  /// lines, which are far ahead or behind, nothing exact has to be asked.
+  /// Whether an end surely comes to the line of another after a time, or never. Decided with error balls, which suffice
+  /// for nearly all lines, since these are far ahead or behind.
   static bool surely_later(const Element& end, const Element& other, double now, double time) {
     const auto f = Arrival{end.path, other.path, Arrival::At::line, 1}.polynomial<Ball<double>>(now);
     const Ball<double> first = f.c[0], last = first + f.c[1] * (Ball<double>(time) - Ball<double>(now));
@@ -152,7 +152,7 @@ class GrowingSegmentsRule {
   static std::optional<Arrival> arrival_at(const Element& end, const Element& other);
 
   bool is_covered(const Arrival& arrival, Id other, const MovingSet<Element>& elements) const;
-  /// All elements are there before the first is inserted.
+  /// False for an element that has not been inserted yet: the set has all elements before the first is inserted here.
   bool is_there(Id id) const { return id < ends_.size() && ends_[id].there; }
   bool may_stop(Id other, const Arrival& arrival, const MovingSet<Element>& elements) const {
     return !ends_[other].stop || is_covered(arrival, other, elements);
@@ -252,8 +252,9 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   put_into_tree(id, repair[id]);
 }
 
-/// Takes an end through all arrivals that are due, and come before another if one is given. What it depends on is
-/// settled first: who has passed a point before, which is a chain of ever earlier times.
+/// Takes an end through all arrivals that are due, or through those before `until`. Whether it stops depends on how far
+/// other ends have come, so these are first taken through their earlier arrivals, and so on: the times get ever
+/// earlier, so this ends.
 inline void GrowingSegmentsRule::settle(Id id, const Arrival* until, Pen& repair) {
   const auto is_due = [&] {
     const End& end = ends_[id];
@@ -291,7 +292,8 @@ inline void GrowingSegmentsRule::insert(Id id, Pen& repair) {
   const Element& element = repair[id];
   if (element.whole) borders_.push_back(id);
   look_ahead(id, nullptr, repair);
-  // Those that may come to it before the last one that they keep. The tree must not change while it is looked through.
+  // Ends that may come to this track before the last one that they keep. The tree must not change while it is looked
+  // through.
   std::vector<Id> comers;
   const auto comes = [&](Id other) { comers.push_back(other); };
   element.whole ? look_at(nullptr, id, comes) : tree_.visit(TrackBox::of(element.path, never), comes);

@@ -12,21 +12,21 @@
 
 namespace kds::structures {
 
-/// In order.
+/// Keeps the first of them, in order.
 inline void GrowingSegmentsRule::keep_first(std::vector<Next>& found) {
   const auto kept = found.begin() + static_cast<std::ptrdiff_t>(std::min(found.size(), kept_ahead));
   std::partial_sort(found.begin(), kept, found.end(), is_before);
   found.erase(kept, found.end());
 }
 
-/// Contains where an end is between two times.
+/// A box that contains the end at all times between two.
 inline TreeBox<2> GrowingSegmentsRule::way(const certificates::PlaneMotion<1>& path, double from, double to) {
   const double ahead = std::nextafter(to - from, never);
   const Span x = span_ahead(path.axis(0), from, ahead), y = span_ahead(path.axis(1), from, ahead);
   return {{x.min, y.min}, {x.max, y.max}};
 }
 
-/// Calls look(id) for those whose track may come to a place, or for all.
+/// Calls look(id) for each end whose track may come to a place; for all ends if `place` is null.
 template <class Look>
 void GrowingSegmentsRule::look_at(const TrackBox::Place* place, Id id, const Look& look) const {
   const auto at = [&](Id other) {
@@ -50,11 +50,12 @@ inline TrackBox GrowingSegmentsRule::box_of(Id id, const Element& element) const
   return end.stop ? box.stopped_at(end.time) : box;
 }
 
-/// Finds the next tracks that an end comes to after another, or else after now: those to which it comes up to a time, a
-/// later one if these are too few.
+/// Finds the next tracks that an end comes to after the track `after`, or if that is null after now. It searches up to
+/// a time ahead, and up to a later one if it finds too few.
 inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repair) {
   const Element& element = repair[id];
-  // What comes after an event of now comes after the double before.
+  // An event at the double `now` happens between the double before and `now`. So what comes after it may come before
+  // `now`.
   const double now = after ? std::nextafter(repair.now(), -never) : repair.now();
   const double begin = std::max(now, element.path.start);
   std::vector<Next> found;

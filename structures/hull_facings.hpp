@@ -20,7 +20,7 @@ namespace kds::structures {
 ///
 /// Up is the direction (e^2, e, 1) with an infinitely small e > 0. So a facet faces the way of the z-coordinate of its
 /// normal or, if that stays zero, of y, of x. The outline is seen along that direction, and forward is, likewise, the
-/// way of x, of -z, of y. A facet or edge that has a size is never without.
+/// way of x, of -z, of y. So each facet that has an area and each edge that has a length faces one way.
 class HullFacings {
  public:
   using Facet = TetrahedronMesh::Facet;
@@ -77,7 +77,7 @@ class HullFacings {
   /// What is stored of a facet or edge: the number of the coordinate that decides, with the sign of the way.
   int stored(Facet f) const { return way_[f]; }
 
-  /// Decided by what is stored. O(facets of the hull), no arithmetic.
+  /// Decided by the stored directions. O(facets of the hull), no arithmetic.
   bool goes_round_once(const TetrahedronMesh& mesh) const {
     struct Edge {
       Id from, to;

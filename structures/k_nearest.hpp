@@ -24,8 +24,8 @@ namespace kds::structures {
 ///
 /// The i-th nearest to a point is a neighbour, in the triangulation, of the point itself or of one of its i - 1 nearest
 /// [Dickerson92]. So for each point it is certified that its k nearest are in order, and that the neighbours of these,
-/// but for the last one, and its own are not nearer than the last. For k = 1 alone NearestNeighboursRule
-/// (nearest_neighbours.hpp) is the plainer one.
+/// but for the last one, and its own are not nearer than the last. For k = 1 NearestNeighboursRule
+/// (nearest_neighbours.hpp) is simpler.
 ///
 /// Cost, besides that of the triangulation: on average some 3 k certificates for a point (compact but for this factor),
 /// of degree 2 for linear and 4 for quadratic paths; an event of its own looks at one point, O(k^2) signs and O(k)
@@ -73,7 +73,7 @@ class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
     for (const NeighboursChange& change : changes) add_users(change.id);
     return look_at_them(false, repair) ? Effect::external : Effect::internal;
   }
-  /// Its neighbours have been followed already.
+  /// Nothing is left to do: the changes of its neighbours have been followed already.
   void change(Id id, Pen& repair) {
     looked_at_.clear();
     add_users(id);
@@ -127,7 +127,7 @@ class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
   std::size_t count_;
   std::vector<List> lists_;  ///< by vertex
   std::vector<Pair> pairs_;
-  std::vector<Slot> free_;  ///< pairs that are none any more
+  std::vector<Slot> free_;  ///< numbers of pairs that do not exist any more
   std::vector<Id> nowhere_, looked_at_;
 };
 
@@ -158,7 +158,7 @@ std::vector<Id> KNearestRule<Path>::find_nearest(Id id, const Pen& repair) const
   return ids;
 }
 
-/// What has to be compared.
+/// The comparisons that certify the list of a point.
 template <class Path>
 auto KNearestRule<Path>::pairs_of(Id id, const std::vector<Id>& nearest) const -> std::vector<Pair> {
   std::vector<Pair> pairs;
@@ -170,8 +170,8 @@ auto KNearestRule<Path>::pairs_of(Id id, const std::vector<Id>& nearest) const -
   return pairs;
 }
 
-/// Brings the list of a point up to date, and marks what has to be compared otherwise, or all of it. Whether the list
-/// has become another.
+/// Brings the list of a point up to date, and marks the comparisons that have changed, or all of them. Returns whether
+/// the list has changed.
 template <class Path>
 bool KNearestRule<Path>::look(Id id, bool all, Pen& repair) {
   const std::vector<Id> nearest = find_nearest(id, repair);

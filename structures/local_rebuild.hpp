@@ -22,9 +22,9 @@ namespace kds::structures {
 /// in the tetrahedron beyond that facet, and the vertices of that are inserted. Then those tetrahedra that lie inside
 /// the boundary are what is missing. This does what flips cannot do alone: facets whose neighbours must be replaced
 /// first, four points that stay in one plane, vertices that become hidden; and it removes vertices. Paper:
-/// [Devillers11], which removes a vertex so. Its argument is why it fits: regular triangulations with the perturbation
-/// are unique, and a tetrahedron whose sphere is empty is empty of fewer points too. So a hole that covers all that is
-/// wrong fits; where less is wrong, so does a smaller one.
+/// [Devillers11], which removes a vertex so. The filling fits for the reason given there: regular triangulations with
+/// the perturbation are unique, and a sphere that is empty of all points is also empty of some of them. So a hole that
+/// covers all wrong tetrahedra can be filled; a smaller one can where fewer are wrong.
 ///
 /// Cost: O(m log m) and the insertion of the hole's vertices, for m tetrahedra around them.
 template <class Predicates>
@@ -79,8 +79,8 @@ class LocalRebuild {
     waiting.clear();
   }
 
-  /// Takes in what is beyond those facets of the boundary that the filling has not, or beyond all, and notes those that
-  /// it has. Whether there was anything to take in.
+  /// Takes into the hole the tetrahedra beyond those facets of the boundary that are not facets of the filling, or
+  /// beyond all, and notes those that are. Returns whether the hole has grown.
   bool grow(std::vector<std::uint32_t>& hole, bool everywhere) {
     std::vector<std::pair<std::array<Id, 3>, Facet>> facets;
     for (std::uint32_t t = 0; t < filling_.end_tetrahedron(); ++t) {

@@ -76,7 +76,7 @@ class NearestNeighboursRule : public StandsOn<Delaunay> {
   typename Delaunay::LengthOrder order(Slot nearer, Slot farther, const MovingSet<Path>& x) const {
     return this->inner().length_order(nearer / 2, farther / 2, x);
   }
-  /// Not so where an edge leads from a point to its own copy.
+  /// False where an edge leads from a point to its own copy.
   bool joins_two(TriangulationEdges::Number edge) const {
     const auto& edges = this->inner().edges();
     return edges.contains(edge) && edges.ends(edge)[0] != edges.ends(edge)[1];

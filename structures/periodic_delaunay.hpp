@@ -30,7 +30,7 @@ namespace kds::structures {
 ///     triangulation.rule().mesh().corners(3 * t)                                      // of triangle t, with offsets
 ///
 /// Any number of points will do, one too: then edges join a point to its own copies, or two points more than once (see
-/// PeriodicMesh). There is no hull, and no case in which nothing is known, but that of no points.
+/// PeriodicMesh). There is no hull, and nothing is known only if there are no points.
 ///
 /// The proof. Each triangle has positive area (Orientation). There are two for each vertex, so their angles add up to
 /// one full turn a vertex; as around each vertex they add up to one or more, the triangles go round once everywhere.

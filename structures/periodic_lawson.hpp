@@ -108,7 +108,7 @@ class PeriodicLawson {
     return is_.orientation(a, d, c) > 0 && is_.orientation(d, b, c) > 0;
   }
 
-  /// Throws std::range_error if the new edge is longer than offsets reach.
+  /// Throws std::range_error if the new edge is longer than an offset can express.
   void flip(Edge h) {
     const auto [a, b, c, d] = mesh_.corners_beside(h);
     require_near(d, c);

@@ -32,8 +32,8 @@ struct VertexCopy {
   }
 };
 
-/// The copies of an edge or a triangle, displaced so that the first is the point itself: by these it is told from
-/// others with the same ids.
+/// The corners of an edge or a triangle, displaced so that the first is the point itself. They identify it among others
+/// with the same ids.
 template <std::size_t N>
 std::array<VertexCopy, N> in_ascending_order(std::array<VertexCopy, N> corners) {
   std::sort(corners.begin(), corners.end());
@@ -171,7 +171,7 @@ class PeriodicMesh : private TriangleMesh {
     set(after[2] + 2, -d_to_c, diagonal);
   }
 
-  /// Takes up that the point of a vertex has jumped by whole periods, so that its copies are where they were.
+  /// To be called when the point of a vertex has jumped by whole periods, so that its copies are where they were.
   void displace(Id vertex, const PeriodOffset& by) {
     for_each_from(vertex, [&](Edge h) {
       offset_[h] = offset_[h] + by;

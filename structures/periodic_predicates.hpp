@@ -55,8 +55,8 @@ struct PeriodicPredicates {
     return !apart(along_x) && !apart(along_y);
   }
 
-  /// How many periods the second is from the first, rounded. Throws std::range_error if that is farther than offsets
-  /// reach.
+  /// How many periods the second is from the first, rounded. Throws std::range_error if that is farther than an offset
+  /// can express.
   PeriodOffset periods_between(Id from, const Path& to) const {
     const auto between = [&](int axis) {
       const double period = periods[static_cast<std::size_t>(axis)];

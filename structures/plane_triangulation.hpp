@@ -59,8 +59,9 @@ class PlaneTriangulationRule {
   std::vector<Id> hull() const;
   /// The edges between points, under numbers that they keep. Those of a convex hull are not numbered.
   const TriangulationEdges& edges() const { return edges_; }
-  /// What structures that stand on a triangulation know of its triangles, be it one of a plane that repeats itself or
-  /// not: corners, origin of a half-edge first, and where they are. at_infinity() ones are nowhere.
+  /// What structures that stand on a triangulation use of its triangles, in a plane that repeats itself as well as in
+  /// one that does not: the corners, origin of a half-edge first, and their places. Corners that are at_infinity() have
+  /// no place.
   using Corner = Id;
   std::array<Corner, 3> corners(Edge h) const { return {mesh_.origin(h), mesh_.target(h), mesh_.apex(h)}; }
   static bool at_infinity(Corner corner) { return corner == infinite; }

@@ -40,7 +40,7 @@ struct InsideChange {
 ///
 /// Cost: for n points, m regions of s sides each, at most s certificates for an event (responsive), n m of them while
 /// all are outside and s for each point in a region (compact, as what it answers is as large); a point is in m to s m
-/// (not local in m). Events are external but where a point outside passes from one side's outside to another's. So
+/// (not local in m). Events are external, except where the point stays outside and only another side proves that. So
 /// counting the points in one moving rectangle takes n certificates and O(1) for a point that enters or leaves; for
 /// many regions at a time this is no range tree.
 template <Region R>
@@ -186,7 +186,7 @@ class PointsInsideRule : public StandsOn<ElementsRule<R>> {
   std::vector<Pair> pairs_;
   Selection<R::sides> selection_;                    ///< pairs whose point is inside
   std::vector<std::uint32_t> count_;                 ///< of points, by region
-  std::vector<std::uint32_t> free_;                  ///< numbers of pairs that are none any more
+  std::vector<std::uint32_t> free_;                  ///< numbers of of pairs that do not exist any more
   std::vector<std::vector<std::uint32_t>> pair_of_;  ///< by region and point
 };
 

@@ -8,9 +8,9 @@
 namespace kds::structures {
 
 /// Candidates that come and go, each with up to `Conditions` conditions, numbered from 0. A candidate is selected if it
-/// meets all of them. One that is has a certificate of each, that it is met; any other has one certificate, of one
-/// condition, that this is not met. When that fails, another unmet condition takes its place, or the candidate is
-/// selected.
+/// meets all of them. A selected one has a certificate for each condition, that it is met; any other has one
+/// certificate, that one of its conditions is not met. When that fails, another unmet condition takes its place, or the
+/// candidate is selected.
 ///
 /// Cost: at most `Conditions` signs a call.
 template <std::size_t Conditions>
@@ -29,7 +29,7 @@ class Selection {
     return contains(c) ? 1 : unmet_[c] == condition ? -1 : 0;
   }
 
-  /// Takes up a candidate, or looks at one again: meets(i) says whether it meets condition i.
+  /// Adds a candidate, or looks at one again: meets(i) says whether it meets condition i.
   template <class Meets>
   void look(Candidate c, const Meets& meets) {
     if (c >= unmet_.size()) unmet_.resize(c + std::size_t{1}, absent);

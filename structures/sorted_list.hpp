@@ -52,7 +52,7 @@ concept SwapListener = requires(L& listener, const L& observed, std::uint32_t id
 ///
 /// Cost: a swap O(1) and three changes of the queue, O(log n) together; a motion change the same plus the swaps that
 /// a jump needs; insertion and removal O(n) moves of memory and O(log n) comparisons; `assign` O(n log n). At most one
-/// event for each adjacent pair is scheduled: the structure is compact and, with two events an element, local.
+/// event for each adjacent pair is scheduled: the structure is compact and, with two events for an element, local.
 ///
 /// `now` is always the clock, in seconds: finite, and not before the last change or event. That is not checked.
 ///
@@ -156,14 +156,14 @@ class SortedList {
     if (now == disturbed_) schedule_tie(slot, now);
   }
 
-  /// Two that stay equal, in the wrong order: no certificate fails then. It happens only by changes that are made
-  /// before all events of their time have been processed.
+  /// Two values that stay equal stand in the wrong order: no certificate fails then. It happens only by changes that
+  /// are made before all events of their time have been processed.
   void schedule_tie(Slot left, double now) {
     if (schedule_.contains(left) || in_order(order_[left], order_[left + 1], now)) return;
     schedule_.set(left, now);
   }
 
-  /// To be called at the end of each change of the schedule.
+  /// Brings the queue up to date (PlaceQueue::settle()). To be called at the end of each change of the schedule.
   void settle() {
     schedule_.settle([this](Slot place) { return order_[place].id; });
     // Fetches the two pairs around it, which will be needed too: in large lists they are not in the nearest cache.
@@ -173,7 +173,7 @@ class SortedList {
     __builtin_prefetch(&order_[place + 2]);
   }
 
-  /// To be called when elements have come.
+  /// To be called when elements have been added.
   void count_held() { measures_.most_held = std::max<std::uint64_t>(measures_.most_held, pairs()); }
 
   std::size_t pairs() const { return order_.empty() ? 0 : order_.size() - 1; }

@@ -17,8 +17,9 @@ namespace kds::structures {
 
 /// Keeps a shortest tree that joins all points of the plane; or of a plane that repeats itself, one copy of each, where
 /// it is SpanningTreeRule<Path, PeriodicDelaunayRule<Path>>. It stands on a Delaunay triangulation, whose edges contain
-/// it [Shamos75], and keeps these in order of their lengths: the tree depends on that order only [Kruskal56]. Two edges
-/// that change places in it exchange their parts in the tree if the longer closes a cycle with the shorter.
+/// it [Shamos75], and keeps these in order of their lengths: the tree depends on that order only [Kruskal56]. When two
+/// edges change places in this order, and the one that becomes longer is in the tree, the other takes its place there
+/// if it closes a cycle of the tree that contains it.
 ///
 /// Cost, besides that of the triangulation: three certificates for an event (responsive), and O(n) steps where an edge
 /// of the tree is passed by another edge, or where one comes or goes; 3 n certificates (compact); as many events as

@@ -91,7 +91,7 @@ class SpatialTriangulationRule {
   }
   /// The corners of the facets of the hull, counter-clockwise seen from outside. O(facets of the hull).
   std::vector<std::array<Id, 3>> hull() const;
-  /// How often a part has been built anew because it could not be repaired by flips; and everything.
+  /// How often a part has been built anew because flips could not repair it; and how often the whole.
   std::uint64_t local_rebuilds() const { return local_rebuilds_; }
   std::uint64_t rebuilds() const { return rebuilds_; }
 
@@ -136,8 +136,8 @@ class SpatialTriangulationRule {
   using Predicates = SpacePredicates<Path>;
   using Mesher = BowyerWatson<Predicates>;
 
-  /// Which certificate stands for a fact: none, as it holds for good; the polynomial itself; or, if that of a sphere
-  /// vanishes, its cofactor number kind - perturbed.
+  /// Which certificate proves a fact: none, since it always holds; the polynomial itself; or, if the polynomial of a
+  /// sphere vanishes, its cofactor number kind - perturbed.
   enum Kind : std::uint8_t { none = 0, plain = 1, perturbed = 2 };
 
   Choice sphere_certificate(std::uint8_t kind, const TetrahedronMesh::Corners& abcd, Id e,

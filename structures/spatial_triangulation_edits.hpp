@@ -55,8 +55,8 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
   settle(replaced, nobody, is, repair);
 }
 
-/// Finds a place for the points that were hidden in what has been replaced, and for vertices that are gone, and
-/// certifies.
+/// Completes a change of the mesh: finds a place for the points that were hidden in the tetrahedra that have been
+/// replaced, and for the vertices that are gone, and marks the new certificates.
 template <class Path>
 void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair) {
   lost_ = lost_ || !replaced.sound;

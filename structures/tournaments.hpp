@@ -14,7 +14,7 @@
 
 namespace kds::structures {
 
-/// Tournaments of elements, a fixed number of them. Each match is certified: the loser is not better than the winner.
+/// A constant number of tournaments of elements. Each match is certified: the loser is not better than the winner.
 /// `Rule`, which derives from it, says what that is:
 ///
 ///     better(i, j, tournament, elements) const      certificate that element i is not worse than j
@@ -49,7 +49,8 @@ class Tournaments {
   /// How many elements there are.
   std::size_t size(std::size_t tournament) const { return brackets_[tournament].size(); }
 
-  /// Plays a match whose certificate has failed, and what follows from it. Whether the tournament has another winner.
+  /// Plays a match whose certificate has failed, and the matches above it that this changes. Returns whether the
+  /// tournament has another winner.
   template <class Pen>
   bool play(Slot slot, Pen& repair) {
     const std::size_t i = tournament(slot);
@@ -63,7 +64,7 @@ class Tournaments {
     brackets_[i].reserve(id + std::size_t{1}, beats(i, repair), marks(i, repair));
     brackets_[i].set(id, true, beats(i, repair), marks(i, repair));
   }
-  /// Lets one out, wherever it is.
+  /// Lets an element out, in whichever tournament it is.
   template <class Pen>
   void leave(Id id, Pen& repair) {
     for (std::size_t i = 0; i < brackets_.size(); ++i) {
@@ -71,7 +72,7 @@ class Tournaments {
     }
   }
 
-  /// Throws AuditFailure unless each element is in so many tournaments, and nobody else is in any.
+  /// Throws AuditFailure unless each element is in `tournaments` of them, and nobody else is in any.
   void audit_matches(const MovingSet<Element>& x, std::size_t tournaments) const {
     std::size_t end = x.end_id();
     for (const Bracket& each : brackets_) {

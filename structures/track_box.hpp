@@ -11,9 +11,9 @@
 
 namespace kds::structures {
 
-/// Contains the tracks of some paths of degree 1 from where they begin to where they are at any time from then on: it
-/// grows at each side as fast as the fastest of them, since the first has begun. `until` is the last time at which a
-/// question may be about them, in s: never for all times, `at_no_time` for none.
+/// A growing box that contains the tracks of some paths of degree 1 at all times: each of its sides moves as fast as
+/// the fastest of them, from when the first of them begins. `until` is the last time, in s, for which the box may be
+/// asked: `never` for all times, `at_no_time` for none.
 ///
 /// Roundings: one of each of a difference, a product and a sum, 2^-53 of the numbers each, one of the margin; 2^-50 of
 /// the numbers covers them, and 2^-1000 underflow.
@@ -52,7 +52,7 @@ struct TrackBox {
     }
     return box;
   }
-  /// The tracks up to a time, for ever.
+  /// The same tracks, which stop growing at a time.
   TrackBox stopped_at(double t) const {
     const TreeBox<2> box = at(t);
     return {box.min, box.max, {}, {}, since, at_no_time};
@@ -64,7 +64,7 @@ struct TrackBox {
     double time;
   };
   bool overlaps(const Place& place) const { return at(place.time).overlaps(place.box); }
-  /// Whether one of the tracks may come to one of another's up to the last time of these here.
+  /// Whether one of the tracks may come to a track of the other box up to `until`.
   bool overlaps(const TrackBox& other) const { return until != at_no_time && at(until).overlaps(other.at(until)); }
   bool contains(const TrackBox& other) const {
     bool all = since <= other.since && other.until <= until;
@@ -73,7 +73,7 @@ struct TrackBox {
     }
     return all;
   }
-  /// Of the beginnings: how it grows is about the same for all.
+  /// The surface of the beginnings only: all boxes grow about alike.
   double surface() const { return max[0] - min[0] + (max[1] - min[1]); }
 
   friend bool operator==(const TrackBox&, const TrackBox&) = default;

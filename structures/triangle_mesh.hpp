@@ -56,7 +56,7 @@ class TriangleMesh {
   std::size_t size() const { return twin_.size() / 3 - free_.size(); }  ///< triangles, infinite ones included
   bool empty() const { return size() == 0; }
 
-  /// Calls f with each half-edge from a vertex, clockwise, until it gives true. Whether it has. Precondition:
+  /// Calls f with each half-edge from a vertex, clockwise, until it returns true. Returns whether it has. Precondition:
   /// contains(vertex).
   template <class F>
   bool any_from(Id vertex, const F& f) const {
@@ -222,7 +222,7 @@ class TriangleMesh {
     twin_[g] = h;
   }
 
-  /// Throws AuditFailure unless half-edges are twins and begin at vertices; gives the number of vertices.
+  /// Throws AuditFailure unless half-edges are twins and begin at vertices; returns the number of vertices.
   std::size_t audit_links() const {
     const auto fail = [](std::size_t h, const char* what) {
       throw AuditFailure("TriangleMesh: half-edge " + std::to_string(h) + ": " + what);

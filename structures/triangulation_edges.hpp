@@ -16,8 +16,8 @@
 
 namespace kds::structures {
 
-/// What has become of an edge of a triangulation. Edges are told apart by their numbers: after points have passed
-/// through each other two may join the same two points until the events of that time are over.
+/// A change of an edge of a triangulation. Edges are identified by their numbers: after points have passed through each
+/// other two edges may join the same two points until the events of that time are over.
 struct EdgeChange {
   enum class What : std::uint8_t { came, went, moved };  ///< moved: an end has got a new motion
   What what;
@@ -50,13 +50,13 @@ class TriangulationEdges {
   bool contains(Number edge) const { return edge < end() && ends_[edge][0] != nobody; }
   /// The lower id first. Precondition: contains(edge).
   const std::array<Id, 2>& ends(Number edge) const { return ends_[edge]; }
-  /// Of a half-edge; none if it leads to infinity.
+  /// The number of the edge of a half-edge; none if it leads to infinity.
   Number of(TriangleMesh::Edge half_edge) const { return of_[half_edge]; }
   /// One of an edge's two half-edges. Precondition: contains(edge).
   TriangleMesh::Edge half_edge(Number edge) const { return half_edge_[edge]; }
 
 
-  /// Takes up the triangles whose corners or neighbours have changed, and calls report(EdgeChange) for each edge that
+  /// Looks at the triangles whose corners or neighbours have changed, and calls report(EdgeChange) for each edge that
   /// went, then for each that came. A triangle may be named twice, and need not be in use any more.
   template <class Report>
   void update(const TriangleMesh& mesh, std::span<const std::uint32_t> touched, const Report& report) {

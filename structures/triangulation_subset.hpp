@@ -1,4 +1,4 @@
-// Some of the edges and triangles of a triangulation, as a rule that stands on it keeps them and tells of them.
+// Some of the edges or triangles of a triangulation, which a rule that stands on it keeps and reports.
 #pragma once
 
 #include "kds/audit.hpp"
@@ -24,7 +24,7 @@ std::array<Id, N> in_ascending_order(std::array<Id, N> corners) {
 }
 
 /// Edges (two corners) or triangles (three) by the numbers that they have in the triangulation, with their corners in
-/// ascending order: so that it can be told which has gone when its number has been given to another.
+/// ascending order: these tell which one has gone when its number has been given to another.
 template <std::size_t Corners, class Corner = Id>
 class TriangulationSubset {
  public:
@@ -56,8 +56,8 @@ class TriangulationSubset {
     return result;
   }
 
-  /// Takes a part in, or another in its place, and calls report(What, number, ids) for the one that went and for the
-  /// one that came. Whether there was one to report.
+  /// Adds a part, or puts it in the place of another, and calls report(What, number, ids) for the part that went and
+  /// for the one that came. Returns whether there was a change to report.
   template <class Report>
   bool put(Number part, const Part& corners, const Report& report) {
     if (contains(part, corners)) return false;
@@ -99,9 +99,9 @@ class TriangulationSubset {
   std::vector<Entry> parts_;
 };
 
-/// Remembers the edges, or the corners, of each triangle, and so knows for triangles that change which of these that
-/// concerns: those that they had and those that they have. All other edges have the same triangles beside them, and all
-/// other points have the same triangles around them.
+/// Remembers the edges, or the corners, of each triangle. So it knows which of these a change of triangles concerns:
+/// those that the triangles had and those that they have. All other edges have the same triangles beside them, and all
+/// other points the same triangles around them.
 ///
 /// `of(h)` gives the number of the edge of a half-edge, or the id of its origin; `none` where there is none.
 class PartsOfTriangles {

@@ -32,7 +32,7 @@ struct VoronoiCell {
   std::array<Vector, 2> directions{};
 };
 
-/// A point has got other neighbours, come, gone, or its cell has become bounded or unbounded.
+/// A point has come, gone, or got other neighbours, or its cell has become bounded or unbounded.
 struct NeighboursChange {
   Id id;
 
@@ -124,7 +124,7 @@ class VoronoiCellsRule : public StandsOn<Telling<Delaunay, TriangleChange>> {
   auto origin_of() const {
     return [this](TriangleMesh::Edge h) { return this->inner().mesh().origin(h); };
   }
-  /// What the triangulation says of a point.
+  /// The neighbours of a point in the triangulation.
   Around look(Id id) const;
   bool take_up(Id id, Pen& repair);
 
@@ -196,7 +196,7 @@ auto VoronoiCellsRule<Path, Delaunay>::look(Id id) const -> Around {
   return around;
 }
 
-/// Whether its neighbours are others.
+/// Looks at a point again. Returns whether its neighbours have changed.
 template <class Path, class Delaunay>
 bool VoronoiCellsRule<Path, Delaunay>::take_up(Id id, Pen& repair) {
   if (id >= around_.size()) around_.resize(id + std::size_t{1});

@@ -1,6 +1,6 @@
 cmake_minimum_required(VERSION 3.23)
-# Of an ordinary inline function that several object files have, a linker takes any. So files named `*_by_four`, compiled
-# for some processors only, must define nothing that others define too: every symbol others see has that name.
+# Of an ordinary inline function that several object files have, a linker takes any. So files named `*_by_four`,
+# compiled for some processors only, must define nothing that others define too: every symbol others see has that name.
 list(FILTER OBJECTS INCLUDE REGEX "_by_four\\.cpp")
 if(NOT OBJECTS)
   message(FATAL_ERROR "No object file of that kind")

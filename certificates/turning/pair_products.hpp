@@ -206,7 +206,8 @@ class ProductsNow {
     return result;
   }
 
-  /// The vector of the radii, turned, is no longer than their sum; it is turned as wrongly as others.
+  /// v rotated. The error of v, a vector of components up to the radii, keeps its length, which is at most their sum;
+  /// and the rotation is as inexact for it as for the middle of v.
   static Vector turned(const Turn& turn, const Vector& v) {
     const double radii = v[0].radius + v[1].radius + v[2].radius;
     Vector result;

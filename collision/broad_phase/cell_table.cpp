@@ -109,7 +109,7 @@ std::size_t CellTable::find(const Block& block, Found& found) const {
   return walked;
 }
 
-/// Without gathering: a bucket that has any is a surprise.
+/// Without Gathering, since few buckets of a slab have anything within the limits.
 std::size_t CellTable::find(const Slab& slab, Found& found) const {
   std::size_t walked = 0;
   const Bucket* const buckets = buckets_.data();

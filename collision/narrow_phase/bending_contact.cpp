@@ -109,7 +109,8 @@ class BendingPair {
         const auto contact = collision::first_contact(*a_over_, *b_over_, query);
         const double time = contact ? contact->contact.time : never;
         if (time < w1 && time >= t) return time <= horizon ? time : never;
-        // One before t was passed over, and they go through each other.
+        // A contact before t has been left unresolved, so the two pass through each other: the search goes on when they
+        // have parted.
         now = !contact ? query.until : time < w1 ? std::max(touching.parts_at(time), next_up(time)) : w1;
         now = std::max(now, std::min(query.from + stride, t));
       }

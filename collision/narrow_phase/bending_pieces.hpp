@@ -1,4 +1,4 @@
-// The pieces of time in which two shapes, of which one bends, are tested.
+// The pieces of time in which two shapes are tested if one of them bends.
 #pragma once
 
 #include "certificates/point_motion.hpp"
@@ -16,9 +16,9 @@ namespace kds::collision {
 /// shapes and motions alone.
 ///
 /// In a piece the two go no farther, relative to each other, than `farthest`: the tolerance of features has to be a
-/// part of the size of a query that can be told from roundings. After the last keyframe the first piece is as long as
-/// the two take to go as far as the smaller is large, and the next ones are twice as long each, up to that: so boxes
-/// that hold all of a piece are useful at first, and pieces are few.
+/// part of the size of a query that can be told from roundings. After the last keyframe the first piece lasts until the
+/// two have gone as far as the smaller one is large, and each next one is twice as long, up to that limit: so boxes
+/// that hold all of a piece are useful at first, and there are few pieces.
 ///
 /// Cost: O(k log k) to make for k keyframes to come; O(log k) a piece.
 template <int Degree>
@@ -53,8 +53,8 @@ class BendingPieces {
   /// Whether nothing changes from the last keyframe on.
   bool together() const { return speed_ == 0 && acceleration_ == 0; }
 
-  /// The piece that holds t, with its begin; before the start the first one. At a clock whose doubles are too sparse
-  /// for more pieces, one that ends before.
+  /// The piece that holds t, its begin included; before the start the first one. Where the doubles of the clock are too
+  /// sparse for more pieces it may be one that ends before t.
   Piece at(double t) const {
     t = std::max(t, start());
     if (t >= last()) return after_last(t);
@@ -75,12 +75,12 @@ class BendingPieces {
   double unit() const { return together() ? 1 : std::clamp(time_of(first_), 0x1p-100, 0x1p100); }
 
  private:
-  /// Between two keyframes: where times are cut finer than doubles are, or nearly.
+  /// The most pieces between two keyframes: more would be nearly as short as the spacing of doubles.
   static constexpr double most_parts = 0x1p20;
 
   double speed(double t) const { return norm(b_.velocity(t) - a_.velocity(t)) + turning_; }
 
-  /// From the last keyframe on: the time in which they go a way, at most; and the way at the begin of piece k.
+  /// From the last keyframe on: the time that the two take at least for a way; and the way at the begin of piece k.
   double time_of(double way) const {
     return way > 0 ? 2 * way / (speed_ + std::sqrt(speed_ * speed_ + 2 * acceleration_ * way)) : 0;
   }

@@ -47,8 +47,8 @@ class BoxAndBall {
   template <class Visit>
   void every_piece(const Visit& visit) const;
 
-  /// The same, the earliest first as far as is known, and only those in which it may be by a time: at first the
-  /// horizon, then the time that visit(piece) returns.
+  /// The same, with the pieces that are probably the earliest first, and only those in which the centre may be up to a
+  /// time: at first the horizon, then the time that visit(piece) returns.
   template <class Visit>
   void earliest_pieces(double horizon, const Visit& visit) const;
 

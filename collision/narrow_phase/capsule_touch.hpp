@@ -17,11 +17,11 @@
 
 namespace kds::collision {
 
-/// When a capsule touches a triangle: their distance is below radius + contact gap. Bodies do not rotate, so this is
-/// equivalent to the centre of the capsule being that near to a prism, the sum of the triangle and the capsule's
-/// segment. The set of such places is the union of 21 convex pieces: slabs over two triangles and three parallelograms,
-/// cylinders about nine edges, balls about six corners, and the inside of the prism, where the segment goes through the
-/// triangle. Same members as BallTouch, whose comments apply here too.
+/// When a capsule touches a triangle: their distance is below radius + contact gap. The two keep their orientations
+/// (those that turn: turning/), so this is equivalent to the centre of the capsule being that near to a prism, the sum
+/// of the triangle and the capsule's segment. The set of such places is the union of 21 convex pieces: slabs over two
+/// triangles and three parallelograms, cylinders about nine edges, balls about six corners, and the inside of the
+/// prism, where the segment goes through the triangle. Same members as BallTouch, whose comments apply here too.
 ///
 /// Margins. The sides of a slab lie a gap farther out each, and so do those across its corners (each corner of a
 /// parallelogram, the sharp ones of a triangle): seen along a slab, no place in it is more than sqrt(2) gaps from the

@@ -1,4 +1,4 @@
-// Dynamic tests of bodies of several parts: those of the parts.
+// Dynamic tests of bodies of several parts: the tests of their parts.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -9,13 +9,13 @@ namespace kds::collision {
 /// The tests (see pair_tests.hpp) of a compound (a) with any shape, also another compound.
 ///
 /// The two are in contact while a part of one is in contact with a part of the other: so times are as exact as those of
-/// the parts. Where contacts are resolved, each pair of parts is judged by itself: one counts if it approaches along
-/// its own normal, of bodies that turn faster than roundings can feign. Parts move with their body, whose motion is not
+/// the parts. Where contacts are resolved, each pair of parts is judged by itself: it counts if it approaches along its
+/// own normal, and for bodies that turn, faster than by roundings. Parts move with their body, whose motion is not
 /// rounded for it.
 ///
-/// The contact at a time is that of the first pair of parts, in the order of those of a, then of b, that are in contact
-/// and approach; if none approaches, of the first in contact; if none is in contact, of the first that was until then,
-/// else of those that are nearest. Its features are those of the two parts.
+/// The contact at a time is the contact of the first pair of parts, in the order of the parts of a, then of b, that are
+/// in contact and approach; if none approaches, of the first pair in contact; if none is in contact, of the first pair
+/// that was in contact until then, else of the nearest pair. Its features are those of the two parts.
 ///
 /// Cost: a few roots in doubles for each pair of parts (PartPairs; of bodies that turn TurningPartPairs), and the tests
 /// of those whose boxes, or balls, meet.

@@ -175,7 +175,7 @@ class ConvexTouch {
  private:
   /// Two sides of 17 axes.
   static constexpr std::size_t capacity = 34;
-  /// And of the directions of k-DOPs, which decide when the two touch, but not in which direction.
+  /// Whether directions of k-DOPs are tested as well, which decide when the two touch, but not in which direction.
   static constexpr bool with_kdops = std::is_same_v<B, PlacedTriangle>;
   static constexpr std::size_t capacity_near = capacity + (with_kdops ? 26 : 0);
   /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.

@@ -1,4 +1,4 @@
-// A half-space as its body is turned.
+// The half-space of a body in world orientation.
 #pragma once
 
 #include "collision/body_motion.hpp"
@@ -12,7 +12,7 @@
 
 namespace kds::collision {
 
-/// The shape as its body is turned.
+/// The shape in the orientation of its body.
 template <class Motion>
 PlacedShape placed_plane(const PlacedShape& shape, const Motion& motion) {
   if constexpr (turns<Motion>) {

@@ -8,17 +8,17 @@
 
 namespace kds::collision {
 
-/// How a hull (a) and another solid touch, in doubles: along the normal of the plane of their difference (see
-/// RoundedPolytope) that they are the least deep below; of what is round, from the nearest point of that difference to
-/// the place of b. The point is in the middle of what both turn towards each other, as for boxes.
+/// How a hull (a) and another solid touch, in doubles. The normal is that of the plane of their difference (see
+/// RoundedPolytope) below which they are least deep; if b is round, it leads from the nearest point of that difference
+/// to the place of b. The point is in the middle of the features that face each other, as for boxes.
 template <int Degree>
 Contact hull_contact(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t);
 
 /// A time from now on before which a plane keeps a hull (a) and another solid apart, or `never` if it does until the
 /// horizon; now if none is found.
 ///
-/// Method: the direction from the nearest point of their difference to the place of b separates them; how long, in
-/// doubles with a bound on their error (QuickMotion), is asked; then another, from there on.
+/// Method: the direction from the nearest point of their difference to the place of b separates them; doubles with a
+/// bound on their error (QuickMotion) tell for how long. From that time on another direction is found, and so on.
 template <int Degree>
 double hulls_apart_until(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double now,
                          double horizon);

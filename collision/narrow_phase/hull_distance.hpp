@@ -13,7 +13,7 @@
 
 namespace kds::collision {
 
-/// Of a convex set what is nearest to the origin.
+/// The point of a convex set that is nearest to the origin.
 template <class Support>
 struct NearestToOrigin {
   Eigen::Vector3d point;  ///< zero if the origin is inside, up to roundings
@@ -28,14 +28,14 @@ namespace detail {
 
 inline const Eigen::Vector3d& point_of(const Eigen::Vector3d& support) { return support; }
 
-/// Of some hulls of one to four points the point nearest to the origin.
+/// The point nearest to the origin of the hull of one to four points.
 struct NearestOfSimplex {
   Eigen::Vector3d point;          ///< zero if the origin is inside, up to roundings
   unsigned kept;                  ///< of which points it is a sum, a bit for each
   std::array<double, 4> weights;  ///< of these, in their order
 };
-/// Of the hulls of the last of the points and of any of those before it. In doubles; of points that are nearly in a
-/// plane or a line it is what roundings make of it.
+/// The nearest point of all hulls of the last point and any of the points before it. In doubles; for points that are
+/// nearly in a plane or on a line the result is only as good as roundings allow.
 NearestOfSimplex nearest_with_last(const std::array<Eigen::Vector3d, 4>& points, std::size_t count);
 
 }  // namespace detail

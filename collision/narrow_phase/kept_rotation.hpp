@@ -8,7 +8,7 @@
 
 namespace kds::collision {
 
-/// As a matrix, rounded: that of the motion in worlds that turn their bodies, elsewhere that of its place.
+/// As a matrix, rounded: the rotation of the motion in worlds of bodies that turn, otherwise that of the placed shape.
 template <class Motion>
 Eigen::Matrix3d kept_rotation(const PlacedShape& shape, const Motion& motion) {
   if constexpr (turns<Motion>) {

@@ -1,4 +1,4 @@
-// What is lowest of a shape along a normal.
+// The lowest part of a shape along a normal.
 #pragma once
 
 #include "certificates/half_space_separation.hpp"
@@ -12,9 +12,9 @@
 
 namespace kds::collision {
 
-/// The lowest place of a shape, exactly: of a box the sum of its rounded half axes, of a hull or a mesh a vertex that is
-/// turned by its rounded matrix, the products not rounded. Of several that are equally low the first. The points of a
-/// capsule's and a ball's radius count as if the normal were exactly of unit length.
+/// The lowest place of a shape, exactly: of a box the sum of its rounded half axes, of a hull or a mesh a vertex that
+/// is turned by its rounded matrix, the products not rounded. Of several that are equally low the first. The points of
+/// a capsule's and a ball's radius count as if the normal were exactly of unit length.
 ///
 /// Cost: in proportion to the corners of a hull; to the logarithm of the triangles of a mesh, and to those of them that
 /// are as low as doubles can tell, whose places are compared in exact arithmetic.
@@ -34,7 +34,8 @@ class LowestOfShape {
   double height_;
 };
 
-/// The part of a shape that is lowest, as supporting_feature() has it; of meshes too: of several triangles the first.
+/// The lowest part of a shape as a feature, as from supporting_feature(); for meshes too: of several triangles the
+/// first.
 SupportingFeature lowest_feature(const PlacedShape& shape, const Eigen::Vector3d& normal);
 
 }  // namespace kds::collision

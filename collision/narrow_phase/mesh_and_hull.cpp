@@ -59,7 +59,8 @@ bool MeshHullContact<Degree>::in_contact(const Body& a, const Body& b, double t)
   return MeshContact<Degree>::in_contact(a, b, t) || holds_a_corner(b, a, t);
 }
 
-/// Out of the surface may be into the solid, and then out through the surface again.
+/// When the mesh no longer touches the surface of the solid it may be inside. Then it separates only after it has
+/// passed through the surface once more.
 template <int Degree>
 double MeshHullContact<Degree>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   for (double t = t0; t <= horizon;) {
@@ -74,7 +75,8 @@ template <int Degree>
 Contact MeshHullContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch& found) {
   Contact contact = MeshContact<Degree>::contact_at(a, b, t, found);
   contact.feature_b = polytope(b.shape).feature_of(contact.feature_b);
-  // What touches may be the rim of a triangle beside the face that does.
+  // The test of two triangles may have found an edge or a corner of the triangle next to the face that touches. Then
+  // the face is meant.
   const Feature whole = supporting_feature(b.shape, -contact.normal).feature;
   if (polytope(b.shape).is_part_of(contact.feature_b, whole)) contact.feature_b = whole;
   return contact;

@@ -8,9 +8,9 @@
 namespace kds::collision {
 
 /// The tests (see pair_tests.hpp) of a mesh (a) and a hull (b): those of the mesh and the surface of the hull, by the
-/// gap law of mesh_contact.hpp. While these are apart each part of the mesh is all inside of the hull or all outside;
-/// what is inside is in contact where bodies pass through each other. Where contacts are resolved, as bodies that begin
-/// in each other are, a mesh that is inside meets the surface of the hull from there.
+/// gap law of mesh_contact.hpp. While these surfaces are apart each connected part of the mesh is wholly inside the
+/// hull or wholly outside. A part inside counts as contact where bodies pass through each other. Where contacts are
+/// resolved it does not: a mesh that begins inside meets the surface of the hull from there.
 template <int Degree>
 struct MeshHullContact {
   using Body = TranslatingShape<Degree>;

@@ -19,9 +19,9 @@ namespace kds::collision {
 
 /// Polynomial in tau >= 0: two surfaces nearer than this count as touching.
 ///
-/// This margin pays for every rounding of the tests of meshes, which are made in doubles. So no contact is missed or
-/// found late, and none slips between two triangles that share an edge; the price is that contact is found early by
-/// at most this gap (in a corner, measured along each of the separating axes that meet there).
+/// This margin covers every rounding of the tests of meshes, which are made in doubles. So no contact is missed or
+/// found late, and none slips between two triangles that share an edge; the price is that contact is found early by at
+/// most this gap (in a corner, measured along each of the separating axes that meet there).
 ///
 /// gap(tau) = `roundings` (S + |r0| + |r1| tau + |r2| tau^2) + `clock` |epoch| |velocity| + uncertainty of r, with S
 /// the sum of the shapes' radii. Derivation, in units of 2^-53 and of the bracket: the rotation matrix has entries

@@ -139,7 +139,7 @@ template <>
 struct PartnerOfKind<ConvexHull> : std::type_identity<PlacedMesh> {};
 template <class Alternative>
 using PartnerOf = typename PartnerOfKind<Alternative>::type;
-/// Meshes that bend have none: their tests are others.
+/// Meshes that bend have none: they are tested by BendingContact.
 template <class Alternative>
 inline constexpr bool has_partner = requires {
   typename PartnerOfKind<Alternative>::type;

@@ -24,7 +24,7 @@ struct MovingShape {
   const Motion& motion;
 };
 
-/// One that keeps its orientation: what most tests are of.
+/// A shape that keeps its orientation.
 template <int Degree>
 using TranslatingShape = MovingShape<certificates::PointMotion<Degree>>;
 
@@ -54,8 +54,8 @@ bool can_move_by(const Shape& shape);
 /// Mode `resolved`: shapes that overlap at t0 by rounding (an impulse has just been applied) are in contact only if
 /// they approach. Mode `transparent`: t0 itself where they overlap there.
 ///
-/// If `found` is given and meshes touch, it receives the triangles, where contact_at can use them; else it is left as
-/// it is. Precondition, here and below: where there is a mesh, both motions have started by t0 (or t).
+/// If `found` is given and meshes touch, it receives the triangles, where contact_at can use them; otherwise it does
+/// not change. Precondition, here and below: where there is a mesh, both motions have started by t0 (or t).
 template <class Motion>
 double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found = nullptr);
@@ -82,7 +82,8 @@ ContactEstimate estimated_first_contact(const MovingShape<Motion>& a, const Movi
                                         double horizon, ContactMode mode, PairMemory& memory,
                                         FoundTouch* found = nullptr);
 
-/// As first_contact, but of bodies that turn no farther than for some turns: if there is none, when to go on.
+/// As first_contact, but for bodies that turn it looks only some turns ahead: if there is no contact in these, it
+/// returns the time from which to go on.
 template <class Motion>
 ContactEstimate certified_first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0,
                                         double horizon, ContactMode mode, FoundTouch* found = nullptr);

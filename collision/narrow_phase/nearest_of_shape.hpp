@@ -16,8 +16,8 @@ struct NearestOfShape {
 /// The centre of the shape is the origin. Meshes are surfaces, all others solid. Of a mesh that bends, where it is at
 /// the time t.
 ///
-/// In doubles: off by some roundings of the coordinates, and where that lies on a triangle by as many more as its
-/// height goes into its longest edge. Cost: in proportion to the triangles of a hull and of a mesh that bends, and to
+/// In doubles: off by some roundings of the coordinates; if the point lies on a triangle, by this times the ratio of
+/// its longest edge to its height. Cost: in proportion to the triangles of a hull and of a mesh that bends, and to
 /// their logarithm of a mesh, unless all of it is equally far.
 NearestOfShape nearest_of_shape(const PlacedShape& shape, const Eigen::Vector3d& to, double t = 0);
 

@@ -97,7 +97,7 @@ class BoxPairTest {
  public:
   BoxPairTest(const TreePose& a, const TreePose& b, const SliceMotion<Degree>& motion);
 
-  /// The data that depend on the box of a alone: kept while it is tested with several boxes of b.
+  /// The data that depend only on the box of a: kept while it is tested with several boxes of b.
   struct Frame {
     std::array<Lanes, 3> turn;  ///< column k: coordinate k of b's model along the axes of a's box
     std::array<Lanes, std::size_t{Degree} + 1> motion;  ///< of b's model origin along them

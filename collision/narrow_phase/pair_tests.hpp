@@ -1,4 +1,4 @@
-// The seam at which kinds of shapes meet: what is asked of a pair of them, as a table.
+// The tests of pairs of shapes, as a table over the kinds of both.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -21,9 +21,9 @@ struct PairTests {
   double (*first_contact)(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch* found);
   /// A time in [t0, never] before which there is no contact; later than the horizon if there is none until then.
   double (*apart_until)(const Body& a, const Body& b, double t0, double horizon, PairMemory& memory);
-  /// As first_contact, of bodies of which apart_until tells nothing at t0; or a time before which there is no contact:
-  /// one up to `farthest` that costs no more (`never`, not
-  /// exact, if there is none until then), or with `earlier` an earlier one that costs less. Null: as first_contact.
+  /// For bodies of which apart_until tells nothing at t0: the first contact (exact), or a time before which there is
+  /// none. That is a time up to `farthest` that costs no more than the first contact (`never`, not exact, if there is
+  /// no contact until `farthest`), or with `earlier` an earlier time that costs less. Null: as first_contact.
   ContactEstimate (*estimated_contact)(const Body& a, const Body& b, double t0, double horizon, double farthest,
                                        ContactMode mode, bool earlier);
   bool (*in_contact)(const Body& a, const Body& b, double t);
@@ -125,7 +125,8 @@ class PairTable {
   }
 
   std::array<std::array<PairTests<Motion>, kinds>, kinds> tests_{};
-  /// Which have been added: whether a pointer to a function is null is no constant under sanitizers (g++ 12).
+  /// Which tests have been added. (With sanitizers g++ 12 does not compare a pointer to a function with null in
+  /// constants.)
   std::array<std::array<bool, kinds>, kinds> given_{};
 };
 

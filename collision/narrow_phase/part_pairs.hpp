@@ -83,7 +83,8 @@ class PartPairs : public ListOfPartPairs {
     return (unbounded(a.shape) ? 0 : a.bounding_radius) + (unbounded(b.shape) ? 0 : b.bounding_radius);
   }
 
-  /// Whether the boxes around the bodies part for good where the answers of the motion end.
+  /// Finds out whether the boxes around the bodies never meet again after the last time for which the motion has
+  /// answers.
   void look_beyond(const PlacedShape& a, const PlacedShape& b) {
     for (std::size_t d = 0; d < 3 && !motion_.whole(); ++d) {
       const auto axis = static_cast<Eigen::Index>(d);

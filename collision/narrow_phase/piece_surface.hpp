@@ -26,8 +26,8 @@ inline const MeshScript* script_of(const PlacedShape& shape) {
 
 /// The surface of one body. Keeps a reference to the body.
 ///
-/// What turns moves on parabolas that it is not far from (RigidSurface::move). A mesh that bends does not turn: the
-/// rotation of its motion, or of its place where motions have none, stays as it is.
+/// The points of a body that turns are near parabolas (RigidSurface::move), which stand for their paths. A mesh that
+/// bends does not turn: the rotation of its motion, or of its placed shape where motions have none, is constant.
 template <class Motion>
 class PieceSurface {
  public:
@@ -56,7 +56,7 @@ class PieceSurface {
     return never;
   }
 
-  /// Over [t0, t1], with so much more uncertainty.
+  /// The surface over [t0, t1], with its uncertainty enlarged by `more`.
   const MovingSurface<degree>& over(double t0, double t1, double more = 0) {
     MovingSurface<degree>* const changed = script_ ? &bend(t0, t1) : &move(t0, t1);
     changed->set_uncertainty(changed->uncertainty() + more);

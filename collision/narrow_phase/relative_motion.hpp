@@ -13,8 +13,8 @@
 
 namespace kds::collision {
 
-/// Centre of b minus centre of a: coefficients of a polynomial in tau, the time since the epoch of the pair. Bodies do
-/// not rotate, so this is the whole motion of a pair.
+/// Centre of b minus centre of a: coefficients of a polynomial in tau, the time since the epoch of the pair. It is the
+/// whole motion of a pair of bodies that keep their orientations. (Those that turn: turning/pair_frame.hpp.)
 template <int Degree>
 struct RelativeMotion {
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1> coefficients;

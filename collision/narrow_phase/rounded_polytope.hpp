@@ -24,11 +24,11 @@ namespace kds::collision {
 
 /// A convex polytope (a) and a ball, a capsule, a box or another polytope, from `now` to the horizon.
 ///
-/// Bodies do not rotate, so the difference of the two cores (ConvexCore) is a polytope that stays as it is, grown by
-/// the radius of b. They penetrate while the place of b as seen from a is inside. That is a union of convex *pieces*:
-/// the difference itself, which is what is inside of all its planes; and if there is a radius, for each corner, edge
-/// and face of its surface the places that are between its sides and nearer than the radius to the point, line or plane
-/// that it spans.
+/// The two keep their orientations (those that turn: turning/), so the difference of their cores (ConvexCore) is a
+/// polytope that stays as it is, grown by the radius of b. They penetrate while the place of b as seen from a is
+/// inside. That is a union of convex *pieces*: the difference itself, which is what is inside of all its planes; and if
+/// there is a radius, for each corner, edge and face of its surface the places that are between its sides and nearer
+/// than the radius to the point, line or plane that it spans.
 ///
 /// The planes of the difference are those of the faces of either, and those that an edge of each span, where they touch
 /// the difference. Which do need not be known exactly: a plane that touches it elsewhere, or only nearly should have

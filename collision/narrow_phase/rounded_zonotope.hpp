@@ -22,13 +22,13 @@ namespace kds::collision {
 
 /// Two shapes, balls, capsules or a capsule and a box, from `now` to the horizon.
 ///
-/// Bodies do not rotate, so the difference of two shapes is a solid that does not change: the sum of the segments of
-/// both, a zonotope, grown by the sum of the radii. They penetrate while the place of b relative to a, a point on a
-/// line or a parabola, is inside. That is a union of convex *pieces*: for each cell of the zonotope's surface (vertex,
-/// segment, parallelogram) the places that are between its sides and nearer than the radius to the point, line or plane
-/// that it spans; and the zonotope itself, where it is solid. If the radius is zero only the last is left: boxes have
-/// their own tests (box_and_box.hpp), and so have a box and a ball (box_and_ball.hpp), for which the pieces are fewer
-/// and simpler since the axes of the box are orthogonal.
+/// The two keep their orientations (those that turn: turning/), so their difference is a solid that does not change:
+/// the sum of the segments of both, a zonotope, grown by the sum of the radii. They penetrate while the place of b
+/// relative to a, a point on a line or a parabola, is inside. That is a union of convex *pieces*: for each cell of the
+/// zonotope's surface (vertex, segment, parallelogram) the places that are between its sides and nearer than the radius
+/// to the point, line or plane that it spans; and the zonotope itself, where it is solid. If the radius is zero only
+/// the last is left: boxes have their own tests (box_and_box.hpp), and so have a box and a ball (box_and_ball.hpp), for
+/// which the pieces are fewer and simpler since the axes of the box are orthogonal.
 ///
 /// The shapes are those that the columns of their rotations describe, taken as exact, and so are all signs: there is no
 /// margin, and no bound on how nearly parallel two capsules are. Parallel capsules, a capsule along a face or an edge

@@ -18,7 +18,8 @@ struct ShapeDistance {
 /// there. Meshes are surfaces, all others solid. Of meshes that bend, where they are at the time t.
 ///
 /// In doubles: off by some roundings of the coordinates. Of hulls that are thinner than a hundred-thousandth of their
-/// length it may be off by 1e-9 of that, and points in common farther from each other. Precondition: what place() makes of shapes.
+/// length it may be off by 1e-9 of that, and points in common farther from each other. Precondition: what place() makes
+/// of shapes.
 ///
 /// Cost: of two convex shapes a dozen looks at their corners; of meshes such looks at the boxes of their trees and at
 /// triangles, as many as are nearly nearest; of a mesh that bends at each triangle, and of a half-space at each vertex.

@@ -36,7 +36,7 @@ struct BodyPart {
 
 /// The bodies that a process stores, each as it was at the end of the last step that was committed. A process that is
 /// alone stores all of them, where they are: in the world of the whole scene, whose slots are their numbers. Several
-/// have a part of them each; the whole world has lent its bodies then, and knows what there is between them.
+/// processes store a part each; then the whole world has lent its bodies, and keeps only attachments and ignored pairs.
 template <class Motion>
 class BodyStore {
  public:
@@ -48,14 +48,15 @@ class BodyStore {
   Engine<Motion>& engine() { return part_ ? part_->engine() : whole_; }
   const Engine<Motion>& engine() const { return part_ ? part_->engine() : whole_; }
   const Bodies<Motion>& bodies() const { return engine().bodies(); }
-  /// By numbers; they ignore each other.
+  /// The ignored pairs, by numbers.
   const IgnoredPairs& ignored() const { return whole_.bodies().ignored(); }
   /// Null where slots are numbers.
   const SlotsByNumber* slots() const { return part_ ? &part_->slots : nullptr; }
   /// The slot of a body; `no_body` if it is not stored here.
   BodySlot find(BodySlot number) const { return part_ ? part_->slots.find(number) : number; }
 
-  /// From now on this stores a part, of no bodies yet. Returns the part that it has stored before, if it has.
+  /// From now on this stores a part, without bodies at first. Returns the part that it has stored before, if there is
+  /// one.
   std::unique_ptr<BodyPart<Motion>> begin_part(double now) {
     WorldOptions options = options_;
     options.start_time = now, options.threads = 1;
@@ -68,7 +69,7 @@ class BodyStore {
   }
   /// Stores this part again, or the whole if it is null.
   void put_part(std::unique_ptr<BodyPart<Motion>> part) { part_ = std::move(part); }
-  /// Adds those of a parcel, but for what is attached to what. Throws std::runtime_error for one that is here.
+  /// Adds the bodies of a parcel, without attachments. Throws std::runtime_error for a body that is here already.
   /// Precondition: it stores a part.
   void store(const Parcel<Motion>& parcel) {
     const std::vector<BodySlot> slots = engine().store(parcel);
@@ -77,7 +78,7 @@ class BodyStore {
       part_->slots.add(parcel.numbers[i], slots[i]);
     }
   }
-  /// Adds those of a parcel, which are not here. Precondition: it stores a part.
+  /// Adds the bodies of a parcel, none of which is here. Precondition: it stores a part.
   void add(const Parcel<Motion>& parcel) {
     store(parcel);
     const Attachments& attachments = whole_.bodies().attachments();
@@ -101,7 +102,7 @@ class BodyStore {
   }
 
  private:
-  /// Whichever of the two comes first.
+  /// Attaches a sensor if both bodies are stored; called for each of the two.
   void attach(BodySlot sensor, BodySlot owner) {
     const BodySlot sensors_slot = find(sensor), owners_slot = find(owner);
     if (sensors_slot == no_body || owners_slot == no_body) return;

@@ -23,7 +23,7 @@
 
 namespace kds::collision {
 
-/// Bodies, by their numbers, that are owned or known by others than before.
+/// Bodies, by their numbers, whose owner or whose knowing domains change.
 class BodyMoves {
  public:
   /// `known`: the domains that are to know it, ascending.
@@ -56,7 +56,7 @@ class BodyMoves {
   std::vector<DomainIndex> known_;  ///< of all, one after another
 };
 
-/// What the domains of a scene share. Who owns and knows a body is known of those that this process stores.
+/// What the domains of a scene share. Owners and knowing domains are stored of the bodies that this process stores.
 struct Division {
   static constexpr DomainIndex nobody = no_domain;
 
@@ -65,7 +65,7 @@ struct Division {
   double greatest_radius = 0;     ///< of bodies that have owners
   double greatest_speed = 0;      ///< of these, along an axis, at the beginnings of motions
   double greatest_bend = 0;       ///< of these: half an acceleration, along an axis
-  double largest_guided = never;  ///< how far bodies reach that have owners though no other body moves them
+  double largest_guided = never;  ///< greatest radius of bodies that have owners though no other body moves them
   double bulge = 0;               ///< how far a path may leave the chord between two of its places within a window
   const SlotsByNumber* slots = nullptr;  ///< of the bodies that are stored; null where they are numbers
   DomainSets sets{partition.size()};
@@ -73,10 +73,10 @@ struct Division {
   std::vector<DomainSets::Number> known{};  ///< by slot, to whom: a set of `sets`
 
   BodySlot slot(BodySlot number) const { return slots ? slots->find(number) : number; }
-  /// The domain in whose cell a body is; `nobody` of fixed bodies that stand, and of large ones that move: no other
-  /// body changes how they do, so all that know them know them right.
+  /// The domain in whose cell a body is; `nobody` for fixed bodies that stand still, and for large ones that move: no
+  /// other body changes their motion, so all copies of them are right.
   DomainIndex owner_of(BodySlot number) const { return owner[slot(number)]; }
-  /// To whom it is known, as a set of `sets`; and these, ascending.
+  /// The domains that know it, as a set of `sets`, and as a list, ascending.
   DomainSets::Number known_to(BodySlot number) const { return known[slot(number)]; }
   std::span<const DomainIndex> knowers(BodySlot number) const { return sets[known_to(number)]; }
   bool is_known_to_one(BodySlot number) const { return known_to(number) < partition.size(); }
@@ -85,7 +85,7 @@ struct Division {
     if (owner.size() <= at) owner.resize(at + std::size_t{1}, nobody), known.resize(owner.size());
     owner[at] = its_owner, known[at] = sets.number_of(its_knowers);
   }
-  /// Finds the domains that know what is at a place and reaches so far: those in whose halo it is.
+  /// Finds the domains that know a body with its centre at a place and with a radius: those in whose halo it is.
   void find_knowers(const Eigen::Vector3d& place, double reach, std::vector<DomainIndex>& found) const {
     found.clear();
     partition.each_within(place, halo + reach,
@@ -98,12 +98,12 @@ struct Division {
   double room() const { return halo - 2 * greatest_radius; }
 };
 
-/// Where the centre of a body is at a time; of one that has not entered, where it will.
+/// Where the centre of a body is at a time; for a body that has not entered, where it will enter.
 template <int Degree>
 Eigen::Vector3d place_at(const certificates::PointMotion<Degree>& path, double t) {
   return path.position(std::max(t, path.start));
 }
-/// A box in which it is for a while.
+/// A box in which the centre is during a stretch of time.
 template <int Degree>
 StaticBox swept_place(const certificates::PointMotion<Degree>& path, double from, double to) {
   return swept_point(path, std::max(from, path.start), std::max(to, path.start));
@@ -138,7 +138,8 @@ MovedBy moved_by(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, B
   return moves || has_script(bodies, scripts, slot) ? MovedBy::itself : MovedBy::nothing;
 }
 
-/// How far from its centre a body reaches, or the farthest of what is attached to it or it to.
+/// The radius of the ball about the centre of a body that holds it; where bodies are attached to each other, all of
+/// these.
 template <class Motion>
 double reach(const Bodies<Motion>& bodies, BodySlot slot) {
   const BodySlot mover = mover_of(bodies, slot);
@@ -181,7 +182,7 @@ std::size_t domains_wanted(const ParallelOptions& options, std::size_t threads, 
   return std::min({threads, bodies / bodies_per_domain, most_domains});
 }
 
-/// Finds out who owns and who knows a body at a time. Returns the owner.
+/// Finds the owner of a body at a time and the domains that know it. Returns the owner.
 template <class Motion>
 DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, const Scripts<Motion>& scripts,
                         BodySlot slot, double now, std::vector<DomainIndex>& knowers) {
@@ -190,15 +191,16 @@ DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, 
   const double reach = detail::reach(bodies, slot);
   const bool guided = moved == detail::MovedBy::itself;
   const bool owned = moved == detail::MovedBy::others || (guided && reach <= division.largest_guided);
-  // Those without an owner stay known for good, so it counts how far they reach.
+  // A body without an owner stays known to the same domains, so its radius counts.
   division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
   return owned ? static_cast<DomainIndex>(division.partition.cell_of(place)) : Division::nobody;
 }
 
 namespace detail {
 
-/// How far bodies that move by themselves may reach if they are to have owners. If all had, windows of a scene with a
-/// large one would be short; so those that are larger than all that others move have none, unless they are many.
+/// The greatest radius with which bodies that move by themselves have owners. If all of them had owners, windows of a
+/// scene with a large one would be short; so those that are larger than all bodies that others move have none, unless
+/// they are many.
 template <class Motion>
 double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, std::span<const BodySlot> slots,
                       Team& team) {
@@ -220,7 +222,7 @@ double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scrip
 }  // namespace detail
 
 /// Divides the bodies as they are at a time; none if the scene is to be run as one world. `slots`: of the bodies that
-/// this process answers for; those of all processes are all bodies of the scene. The same in all processes.
+/// this process answers for; each body of the scene is in one process. The result is the same in all processes.
 template <class Motion>
 std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts,
                                std::span<const BodySlot> slots, double now, const ParallelOptions& options,
@@ -253,7 +255,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
   farthest = greatest[0], radius = greatest[1], speed = greatest[2], bend = greatest[3];
   std::copy_n(&greatest[4], 3, high.begin()), std::copy_n(&greatest[7], 3, minus_low.begin());
   const double halo = 2 * radius + options.halo * detail::spacing(count[0], -minus_low, high);
-  // Places must be known far better than how far bodies are apart.
+  // Places must be known far more exactly than the distances of bodies.
   if (!(std::isfinite(halo) && halo > 0x1p-20 * farthest)) return std::nullopt;
   std::size_t wanted = domains_wanted<Motion>(options, threads, count[0]);
   Partition partition(places, wanted, team);

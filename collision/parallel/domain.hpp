@@ -23,16 +23,16 @@
 
 namespace kds::collision {
 
-/// What has come of a window, or of its last step, in a domain.
+/// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
-  /// Whether nothing has happened that is not divided: nothing has come to rest, no pair is let pass, and no script
-  /// takes a body far away at one instant.
+  /// False if something has happened that domains cannot compute: something has come to rest, a pair is let pass, or a
+  /// script takes a body far away at one instant.
   bool divisible = true;
-  /// Whether what was not followed has stayed where it had to.
+  /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;
-  /// How far owned bodies have come out of the cell.
+  /// How far owned bodies have left the cell.
   double overshoot = 0;
-  /// How near to this cell copies have come, from when they were wrong: as they were or as they should have been.
+  /// How near to this cell wrong copies have come, or their originals, from when they went wrong.
   double nearest_wrong = never;
   std::uint64_t wrong = 0;  ///< copies that have gone wrong
   std::uint64_t owned = 0;
@@ -52,9 +52,9 @@ struct NeighbourDomain {
 };
 
 /// A domain: a cell of space, and a world that knows the bodies in it, which it *owns*, and *copies* of those that are
-/// not farther outside than the halo. It runs them for a window. Far out copies go wrong, since what is beyond them is
-/// not known. When the owners have told what happened to the bodies, each domain finds out how near to its cell
-/// anything came that it did not know, or knew wrongly; docs/parallel.md says what follows.
+/// not farther outside than the halo. It runs them for a window. Copies far outside the cell go wrong, since the bodies
+/// beyond them are not known. When the owners have told what happened to their bodies, each domain finds out how near
+/// to its cell any body came that it did not know, or knew wrongly; docs/parallel.md says what follows.
 ///
 /// Owned bodies deeper in the cell than twice the halo are not followed one by one: that they stay deeper than the halo
 /// is checked.
@@ -75,7 +75,7 @@ class Domain final : private BasicWorldListener<Motion> {
   /// of bodies known here from then on that overlap, by their numbers.
   void exchange(std::span<const BodySlot> go, std::span<const BodySlot> come, const BodyStore<Motion>& store,
                 std::span<const Overlap> overlaps);
-  /// Begins a window: finds out which bodies are whose, as the division says.
+  /// Begins a window: finds the owners of the bodies in the division.
   void begin_window();
 
   /// Runs a step of the window.
@@ -91,7 +91,7 @@ class Domain final : private BasicWorldListener<Motion> {
   std::span<const BodySlot> wrong() const { return wrong_; }
   /// The motions that bodies have been given in this window, of copies and of owned bodies that others know.
   std::span<const Change> changes() const { return changes_.all(); }
-  /// Those of them that the last step has brought.
+  /// Those of them that are of the last step.
   std::span<const Change> fresh() const { return fresh_; }
   std::vector<DomainEvent> take_events() { return std::move(events_); }
   std::size_t index() const { return index_; }

@@ -45,7 +45,7 @@ class Domains {
   const Division& division() const { return *division_; }
   BodyStore<Motion>& store() { return store_; }
   const BodyStore<Motion>& store() const { return store_; }
-  /// Whether this process stores the body, and right.
+  /// Whether this process stores the body in its right state: as one that it owns, or one without an owner.
   bool has(BodySlot number) const;
   /// Slots, in the store, of the bodies that this process answers for: each body of the scene is in one process.
   std::vector<BodySlot> answered() const;
@@ -53,15 +53,16 @@ class Domains {
   // divide_bodies.cpp
   /// As BasicParallelWorld::add_shares(), at `now`.
   void add_shares(std::size_t count, const std::function<BasicBodyDescription<Motion>(std::size_t)>& body, double now);
-  /// Divides the bodies as they are in the stores. `answered`: as answered() was. `overlaps`: all pairs that overlap of
-  /// which one is among these, by numbers. `logs`: whether events are recorded. Then make().
+  /// Divides the bodies as they are in the stores. `answered`: the bodies that this process answers for, as from
+  /// answered(). `overlaps`: all pairs that overlap with one of these, by numbers. `logs`: whether events are recorded.
+  /// Then make().
   void begin(Division division, std::span<const BodySlot> answered, std::vector<Overlap> overlaps, bool logs,
              double now);
   /// The pairs that overlap of which this process knows.
   std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
-  /// There are no domains any more, and the world of each process has all bodies. Returns the pairs that overlap.
+  /// Ends the domains, and gives the world of each process all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
-  /// There are no domains any more, and where the bodies are the caller will say.
+  /// Ends the domains without bringing their bodies together. The caller then puts other bodies into the stores.
   void leave();
 
   // saved_parts.cpp
@@ -70,7 +71,7 @@ class Domains {
   /// As BasicParallelWorld::save_parts() where the bodies are not all in the whole world, or there are domains.
   kds::Snapshot save(double now, const WriteBodies& write, std::size_t bodies_in_block);
   /// As BasicParallelWorld::load_parts(), of a scene whose bodies are in parts: afterwards each process stores those
-  /// that it has read, as after add_shares(). Where it throws, all is as it was.
+  /// that it has read, as after add_shares(). If it throws, nothing changes.
   void load(const typename Engine<Motion>::Image& rest, const ReadBodies& read);
 
   /// In the window that begins next, a path may leave the chord between two of its places by this much.
@@ -79,9 +80,9 @@ class Domains {
   void make(double now);
   /// Runs a step of a window. Throws what a domain throws; other processes then wait for this one in vain.
   void run(double until);
-  /// What has come of it.
+  /// The outcome of that step.
   const StepOutcome& outcome() const { return outcome_; }
-  /// The step, up to `now`, holds: the store follows.
+  /// The step, up to `now`, holds: brings the bodies of the store to its end.
   void commit(double now);
   /// The events of the step that was committed, of the domains of this process.
   StepEvents take_step();
@@ -93,7 +94,7 @@ class Domains {
   /// After the last step of a window that was committed, at `now`: finds out who is to own and to know which bodies,
   /// and tells those who are to know them. Then exchange() or make().
   void end_window(double now);
-  /// The domains take in and let go what they are to, and begin a new window.
+  /// The domains take in and let go bodies as end_window() has found, and begin a new window.
   void exchange();
 
   /// The work of the domains that this process runs, and has run.

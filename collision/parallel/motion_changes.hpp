@@ -28,7 +28,8 @@ struct MotionChange {
   }
 };
 
-/// Not whether they are equal: 0 and -0 are, and may have different consequences.
+/// Whether two motions have the same bits. Equality does not suffice: 0 and -0 are equal, and may have different
+/// consequences.
 template <int Degree>
 bool same_bits(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b) {
   return std::memcmp(static_cast<const void*>(&a), static_cast<const void*>(&b), sizeof(a)) == 0;
@@ -49,13 +50,13 @@ bool has_lower_number(const MotionChange<Motion>& a, const MotionChange<Motion>&
   return a.number < b.number;
 }
 
-/// Sorts by numbers; those of one body stay in their order.
+/// Sorts changes by the numbers of bodies; the changes of one body stay in their order.
 template <class Motion>
 void sort_by_number(std::vector<MotionChange<Motion>>& changes) {
   std::stable_sort(changes.begin(), changes.end(), has_lower_number<Motion>);
 }
 
-/// Those of a window, by numbers, and of one body in the order of time.
+/// The changes of a window, by the numbers of bodies, and those of one body in the order of time.
 template <class Motion>
 class MotionChanges {
  public:

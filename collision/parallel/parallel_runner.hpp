@@ -1,4 +1,4 @@
-// What is behind a ParallelWorld: windows, and stretches as one world.
+// The implementation of a ParallelWorld: windows, and stretches as one world.
 #pragma once
 
 #include "collision/parallel/division.hpp"
@@ -28,7 +28,8 @@ namespace kds::collision {
 
 namespace detail {
 
-/// Each of several processes has one thread if nothing else is said: they are one for each core, as a rule.
+/// Each of several processes has one thread unless the options say otherwise: as a rule there is one process for each
+/// core.
 inline std::size_t threads_of_one(const ParallelOptions& options, const Team& team) {
   if (options.threads > 0) return options.threads;
   return team.count() > 1 ? 1 : std::max(1u, std::thread::hardware_concurrency());
@@ -99,7 +100,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     begin_at(image.callers_now);
   }
   bool divided() const { return domains_.any(); }
-  /// Whether the bodies are elsewhere than in the whole world.
+  /// Whether the bodies are not in the whole world.
   bool apart() const { return divided() || domains_.store().is_part(); }
   std::size_t domains() const { return domains_.size(); }
   std::size_t stored() const { return domains_.store().bodies().size(); }
@@ -270,7 +271,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     domains_.make(now_);
   }
 
-  /// A stretch of time that no windows lead through.
+  /// Runs a stretch of time through which windows do not get.
   void run_undivided(double t) {
     stretch_ = std::max(stretch_, 4 * length_.seconds());
     length_ = WindowLength(length_.seconds());
@@ -330,7 +331,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     }
     tell_timers(now_, true);
   }
-  /// Those that have rung before t, or then, too. Of what happens at one time overlaps come first.
+  /// Tells of the timers that have rung before t, and with `then` also of those at t. At one time overlaps are told
+  /// first.
   void tell_timers(double t, bool then) {
     const auto is_due = [&] {
       return !timers_.empty() && (timers_.front().time < t || (then && timers_.front().time == t));

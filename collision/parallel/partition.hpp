@@ -24,7 +24,7 @@ inline double outside(const Eigen::Vector3d& place, const StaticBox& cell) {
   return std::max({0.0, (cell.min - place.array()).maxCoeff(), (place.array() - cell.max).maxCoeff()});
 }
 
-/// How far outside a cell a box reaches: its farthest place.
+/// How far outside a cell the farthest point of a box is.
 inline double reach_outside(const StaticBox& box, const StaticBox& cell) {
   return std::max({0.0, (cell.min - box.min).maxCoeff(), (box.max - cell.max).maxCoeff()});
 }

@@ -95,7 +95,7 @@ void PeriodicWorld<Degree>::grow_reach(double radius) {
   }
 }
 
-/// Up to roundings, which settle() sets right.
+/// Finds the zones up to roundings, which settle() corrects.
 template <int Degree>
 void PeriodicWorld<Degree>::find_zones(Real& body) {
   const Eigen::Vector3d x = world_.motion(body.in_world).position(now());

@@ -59,8 +59,8 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
   const double greatest = inertia.cwiseAbs().maxCoeff();
   if (!(greatest > 0)) refuse_tensor("must not be zero");
   if (!(greatest >= least_entry && greatest <= greatest_entry)) {
-    refuse_tensor("its greatest entry is " + detail::number_text(greatest) +
-                  "; from " + detail::power_text(least_entry) + " to " + detail::power_text(greatest_entry) + " is supported");
+    refuse_tensor("its greatest entry is " + detail::number_text(greatest) + "; from " +
+                  detail::power_text(least_entry) + " to " + detail::power_text(greatest_entry) + " is supported");
   }
   const double unit = unit_of(inertia);
   Matrix3d m = unit * inertia;

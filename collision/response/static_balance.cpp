@@ -143,7 +143,7 @@ bool balanced(std::span<const Load> loads, std::span<const Foothold> footholds, 
   constexpr int most_steps = 2048;
   constexpr int pause = 32;
   constexpr int most_hopeless = 4;
-  constexpr double progress = 0.875;  // in a pause, or there is little hope
+  constexpr double progress = 0.875;  // of `least`: a pause after which more is left counts as hopeless
   Descent<Load> descent(loads, footholds);
   const auto part = [&](std::size_t i) {
     const Unbalanced& rest = descent.left_of(i);

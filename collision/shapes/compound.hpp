@@ -20,8 +20,8 @@
 
 namespace kds::collision {
 
-/// Parts that make no compound. The message names what is wrong; `part` the part that is wrong, from 0, if one is: then
-/// it begins "compound: part 3: ".
+/// Parts that make no compound. The message names what is wrong; `part` is the number of the wrong part, from 0, if
+/// there is one: then it begins "compound: part 3: ".
 class InvalidCompound : public std::invalid_argument {
  public:
   explicit InvalidCompound(const std::string& what, std::optional<std::size_t> part = {})

@@ -5,8 +5,8 @@
 
 namespace kds::collision {
 
-/// A half-space in world orientation. These doubles *are* the half-space from here on: its normal is a unit vector up to
-/// four roundings, exactly one along an axis in an orientation that is exact. Precondition: the shape is one.
+/// A half-space in world orientation. These doubles *are* the half-space from here on: its normal is a unit vector up
+/// to four roundings, exactly one along an axis in an orientation that is exact. Precondition: the shape is one.
 HalfSpace placed_half_space(const PlacedShape& placed);
 
 namespace detail {

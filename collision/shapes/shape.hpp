@@ -62,8 +62,8 @@ struct BendingMesh {
   std::shared_ptr<const MeshScript> script;
 };
 
-/// All points x with normal . x <= offset, seen from the body's centre: a floor, a wall. The normal is of unit length up
-/// to 1e-6 (it is normalised); the offset is in units of length. Nothing of it bounds it, so its body is in no broad
+/// All points x with normal . x <= offset, seen from the body's centre: a floor, a wall. The normal is of unit length
+/// up to 1e-6 (it is normalised); the offset is in units of length. Nothing of it bounds it, so its body is in no broad
 /// phase: it is tested with each body that it may collide with (world/unbounded.hpp).
 struct HalfSpace {
   Eigen::Vector3d normal;
@@ -116,7 +116,8 @@ std::shared_ptr<const Mesh> mesh_of(const Shape& shape);
 /// radii: see MeshClearance (mesh_margins.hpp), which grows volumes where it is not. Larger has more pairs tested.
 inline constexpr double box_margin = 0x1p-24;
 
-/// A shape turned into the orientation it keeps: bodies translate and do not rotate.
+/// A shape turned into an orientation. The bodies of a World keep theirs; those of a TurningWorld have it in their
+/// motion.
 struct PlacedShape {
   Shape shape;
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();

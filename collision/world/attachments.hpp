@@ -38,7 +38,7 @@ class Attachments {
     std::vector<BodySlot>& sensors = sensors_[owner];
     sensors.insert(std::upper_bound(sensors.begin(), sensors.end(), sensor), sensor);
   }
-  /// The slot is given up. Precondition: it has no sensors.
+  /// A body is removed: it is attached to no other from then on. Precondition: no sensors are attached to it.
   void detach(BodySlot sensor) {
     const auto found = owner_.find(sensor);
     if (found == owner_.end()) return;

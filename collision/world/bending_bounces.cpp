@@ -41,7 +41,7 @@ Vector3d Engine<Motion>::surface_velocity(BodySlot a, BodySlot b, const Contact&
 }
 
 /// The speed at which a body leaves a mesh that bends, after it has approached with `approach`, or parted if that is
-/// negative. It is so much at least that bounces take time, and leave the tolerance within which contacts are found.
+/// negative. It is at least so high that bounces take time and leave the tolerance within which contacts are found.
 /// Nothing rests on such a mesh: what lies on it bounces in flights of WorldOptions::shortest_flight.
 template <class Motion>
 double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact& contact, double approach,
@@ -56,7 +56,8 @@ double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact
   // A surface that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const Vector3d normal_rate = bends(a) ? of_a.normal_rate : of_b.normal_rate;
   double pressed = -dot(n, at_b.acceleration - at_a.acceleration) - 2 * dot(normal_rate, velocity_b - velocity_a);
-  // And what falls together will be pressed together when one of them lies on something.
+  // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
+  // each of them would press if the other were at rest counts too.
   for (const Vector3d& acceleration : {at_a.acceleration, at_b.acceleration, Vector3d(2 * bodies_.free_term(a, 2, t)),
                                        Vector3d(2 * bodies_.free_term(b, 2, t))}) {
     pressed = std::max(pressed, std::abs(dot(n, acceleration)));
@@ -74,7 +75,8 @@ double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact
                 0.5 * options_.shortest_flight * pressed, std::sqrt(4 * tolerance * std::max(pressed, 0.0))});
   const double rebound = std::max(std::min(bodies_[a].restitution, bodies_[b].restitution) * approach, slowest);
   if (burst <= options_.zeno.contacts) return rebound;
-  // It meets others again and again at one instant: out of the tolerance, then.
+  // It meets others again and again at one instant. So it gets the speed that takes it out of the tolerance within the
+  // shortest flight.
   const BodySlot mesh = bodies_.fixed(a) ? a : b;
   return std::max(rebound, bending_tolerance * bodies_[mesh].bounding_radius / options_.shortest_flight);
 }

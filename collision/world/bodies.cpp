@@ -180,7 +180,7 @@ std::vector<std::shared_ptr<const Mesh>> Bodies<Motion>::meshes() const {
   return result;
 }
 
-/// From a body to its image, or back: what is copied as it is.
+/// Copies the members that are the same in a body and in its image, either way.
 template <class Motion, class From, class To>
 static void copy_properties(const From& from, To& to) {
   to.mass = from.mass, to.inverse_mass = from.inverse_mass, to.restitution = from.restitution;
@@ -264,7 +264,7 @@ void Bodies<Motion>::number_from(BodySlot first) {
 template <class Motion>
 void Bodies<Motion>::lend() {
   lent_ = bodies_.size();
-  // Their memory is given back, as it would not be if `{}` were assigned.
+  // Swapping gives their memory back; assigning `{}` would not.
   LargeVector<Mover>().swap(movers_);
   LargeVector<Motion>().swap(motions_);
   LargeVector<Body>().swap(bodies_);

@@ -107,11 +107,10 @@ class Moving : private std::optional<PlacedShape>, public MovingShape<Motion> {
 
 }  // namespace detail
 
-/// The bodies of a world, by slot, which of them are about to enter, and their ids.
+/// The bodies of a world by slot, their ids, and which of them are about to enter.
 ///
-/// The slot of a body that has been removed is given again, with the next generation, the slot that became free last
-/// first: so which slots bodies get is a function of what callers do. A slot whose generations are used up, after 2^32
-/// bodies, is retired: it stays empty.
+/// A body that is added gets the slot that became free last, with the next generation: so which slots bodies get is a
+/// function of what callers do. A slot whose generations are used up, after 2^32 bodies, is retired: it stays empty.
 ///
 /// Cost: O(1) each; memory for the largest number of bodies at any one time. Worlds from which nothing is removed store
 /// no generations.
@@ -171,8 +170,8 @@ class Bodies {
       return Eigen::Vector3d::Zero();
     }
   }
-  /// The same at t, and its derivatives up to factors: coefficient `order` >= 2 about t of the motion that callers
-  /// gave.
+  /// Coefficient `order` >= 2 about t of the motion that callers gave last: half its acceleration at t, or a higher
+  /// derivative times a factor.
   Eigen::Vector3d free_term(BodySlot slot, [[maybe_unused]] std::size_t order, [[maybe_unused]] double t) const {
     if constexpr (Motion::degree >= 3) {
       return bodies_[slot].given.restarted(t).coefficients[order];
@@ -184,7 +183,7 @@ class Bodies {
     if constexpr (Motion::degree == 2) bodies_[slot].force = path_of(motion).coefficients[2];
     if constexpr (Motion::degree >= 3) bodies_[slot].given = path_of(motion);
   }
-  /// Whether a body that is given another motion at t jumps: is then elsewhere, by more than rounding.
+  /// Whether a body that is given this motion at t jumps: begins it at another place, by more than rounding.
   bool is_jump(BodySlot slot, const Motion& to, double t) const;
 
   /// Whether some body is a sensor, or was.
@@ -224,11 +223,12 @@ class Bodies {
   bool any_waits() const { return !waiting_.empty(); }
   bool waits(BodySlot slot) const;
   const std::vector<BodySlot>& waiting() const { return waiting_; }
-  /// Takes those that have waited longest, all or so many.
+  /// Takes those that have waited longest, `most` or all.
   std::vector<BodySlot> take_waiting(std::size_t most);
 
-  /// Where bodies are those of another world (transfer.cpp), the slots that they have there, by slot: the order of
-  /// events of one time, and of the two bodies of a pair, is that of numbers. Else slots are numbers.
+  /// By slot, the number of a body: the order of events of one time, and of the two bodies of a pair, is the order of
+  /// numbers. Where the bodies are those of another world (transfer.cpp), it is the slot that the body has there;
+  /// otherwise the slot itself, and this is empty.
   const LargeVector<BodySlot>& numbers() const { return numbers_; }
   bool numbered() const { return !numbers_.empty(); }
   BodySlot number(BodySlot slot) const { return numbers_.empty() ? slot : numbers_[slot]; }
@@ -238,23 +238,24 @@ class Bodies {
   /// The bodies have these numbers, in the order of their slots.
   void number_from(BodySlot first);
   // Bodies that several processes have, each a part (transfer.cpp).
-  /// Others have the bodies from now on: what is kept is which there are and their ids, what is attached to what, and
-  /// who ignores whom. Until take_back() there are no slots.
+  /// Others have the bodies from now on. This keeps which bodies there are, their ids, attachments, and ignored pairs.
+  /// Until take_back() there are no slots.
   void lend();
-  /// Of so many bodies that are to come, in slots that are their numbers: as if they had been lent.
+  /// The same for so many bodies that are to come, in slots that are their numbers.
   void lend(std::size_t bodies);
   bool has_lent(BodyId id) const;
-  /// There are as many slots as before, all empty.
+  /// Ends lend(): there are as many slots as before it, all empty.
   void take_back();
 
   /// The whole state as plain data, for snapshots.
   struct Image;
   Image image() const;
-  /// The same with how many they are in place of the bodies; also where they are lent.
+  /// The same with the number of bodies in place of the bodies; also while they are lent.
   Image image_without_bodies() const;
-  /// Bodies in this order, without what there is between them. `meshes`: all that they may have.
+  /// Bodies in this order, without attachments and ignored pairs. `meshes`: all that the bodies may have.
   Image image_of(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
-  /// Adds the body in this place of such an image, as it was: with a number, or in an empty slot that is its number.
+  /// Adds the body that has this place in such an image, unchanged: with that number, or in the empty slot that is the
+  /// number.
   BodySlot put(const Image& image, std::size_t place, BodySlot number);
   void put_back(const Image& image, std::size_t place, BodySlot slot);
   /// Precondition: the image has been checked.

@@ -104,7 +104,7 @@ bool Bodies<Motion>::Image::may_collide(BodySlot a, BodySlot b) const {
          !std::binary_search(ignored.begin(), ignored.end(), IgnoredPairs::pair(a, b));
 }
 
-/// Free slots, and generations.
+/// Checks free slots and generations.
 template <class Motion>
 void Bodies<Motion>::Image::check_free() const {
   const std::size_t slots = lent() ? elsewhere.slots : bodies.size();
@@ -129,7 +129,7 @@ void Bodies<Motion>::Image::check_free() const {
   if (!bodies.empty() || !waiting.empty()) image::fail("bodies: they are elsewhere, and here");
 }
 
-/// Pairs that are ignored, and that are attached; those of bodies that are elsewhere, as far as can be seen here.
+/// Checks ignored and attached pairs; those of bodies that are stored elsewhere only as far as is possible here.
 template <class Motion>
 void Bodies<Motion>::Image::check_related() const {
   const auto known = [this](BodySlot slot) { return lent() ? slot < elsewhere.slots : alive(slot); };

@@ -60,7 +60,7 @@ struct Bodies<Motion>::Image {
   bool alive(BodySlot slot) const { return slot < bodies.size() && bodies[slot].alive; }
   bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
   std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
-  /// Whether a body is there, has entered, too, or was removed.
+  /// Whether a body is there; whether it has entered; whether it was removed.
   bool there(BodyId id) const { return alive(body_slot(id)) && body_generation(id) == generation(body_slot(id)); }
   bool present(BodyId id) const { return there(id) && entered(body_slot(id)); }
   bool removed(BodyId id) const {

@@ -11,7 +11,7 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
-/// If that rate is zero, its first derivative that is not, up to a positive factor.
+/// The rate at which the two part; where it is zero, its first derivative that is not, up to a positive factor.
 template <class Motion>
 double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
   const auto& path_a = bodies_.path(a);
@@ -83,8 +83,8 @@ void Engine<Motion>::process_wall() requires(!turns<Motion>) {
   take_up_bounce();
 }
 
-/// If only this body is concerned, its new motion is taken up by the parts of the world after it has been reported, or
-/// before the next change if a callback makes one.
+/// If only this body is concerned, the parts of the world get its new motion after it has been reported, or before the
+/// next change if a callback makes one.
 template <class Motion>
 void Engine<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
   ++counters_.motion_updates;
@@ -94,15 +94,15 @@ void Engine<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requir
   bounced_ = slot;
 }
 
-/// Whether the two that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative
+/// Whether two bodies that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative
 /// acceleration towards each other; `size`: magnitude of the coordinates.
 template <class Motion>
 bool Engine<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
   if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
   if (!(pressed > 0)) return false;
   // At a large clock the doubles are sparse: a flight must last for several of them. And it must rise by several
-  // roundings of the coordinates: else two bodies with a light one between them would bounce for ever at a distance
-  // that doubles cannot make smaller.
+  // roundings of the coordinates: otherwise two bodies with a light one between them would bounce endlessly at a
+  // distance that doubles cannot make smaller.
   const double spacing = next_up(std::abs(clock_.now)) - std::abs(clock_.now);
   const double shortest = std::max(options_.zeno.interval / std::max(options_.zeno.contacts, 1u), 16 * spacing);
   const double lowest = 0x1p-48 * size;

@@ -42,8 +42,8 @@ void require_steady_clock(const certificates::RigidMotion<Degree>& motion, doubl
                               "doubles of the clock");
 }
 
-/// Whether bodies of a shape keep their orientation: what a half-space sweeps while it turns has no bounds, and the
-/// vertices of a mesh that bends say themselves how it turns.
+/// Whether bodies of a shape keep their orientation: a half-space, since what it would sweep has no bounds, and a mesh
+/// that bends, since its script can turn it.
 inline bool keeps_orientation(const Shape& shape) { return unbounded(shape) || bends(shape); }
 
 /// Throws std::invalid_argument, naming the motion by `name`, if it would turn a body that keeps its orientation.

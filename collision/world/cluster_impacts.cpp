@@ -239,8 +239,8 @@ class RestingContacts<Motion>::Neighbourhood {
   std::deque<std::uint32_t> waiting_;
 };
 
-/// A body that strikes another joins the cluster of that one, or stays in its own; bodies that rested wake. Returns the
-/// time at which their span ends, which is now if a new one is to begin.
+/// A body that strikes another joins that body's cluster, unless it is in one itself; bodies that rested wake. Returns
+/// the time at which their span ends, which is now if a new one is to begin.
 template <class Motion>
 double RestingContacts<Motion>::wake(const Contact& contact, bool joins) {
   const double now = clock_.now;
@@ -283,8 +283,8 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::add_to_cluster(c
   return slot;
 }
 
-/// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, measured
-/// by mass; and as far beyond as restitution says. Only bodies that the impact affects are solved for.
+/// The law of impacts [Moreau88]: of all velocities that no contact forbids, those nearest to the velocities before,
+/// measured by mass; restitution adds its part of the same change. Only bodies that the impact affects are solved for.
 template <class Motion>
 void RestingContacts<Motion>::impact(const Contact& contact, double restitution) {
   const double now = clock_.now;

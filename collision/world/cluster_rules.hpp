@@ -24,8 +24,8 @@ inline constexpr double kept_gap = 0x1p-7;
 inline constexpr double room_of_many = 0x1p-12;
 inline constexpr double room_of_curves = 0x1p-17;
 inline constexpr double room_of_planes = 0x1p-23;
-/// Parts of that room: by how much a gap that is too small grows in a span, the error that sweeps may leave, and by how
-/// much an impact elsewhere may reduce the gap before it is passed on.
+/// Parts of that room: by how much a gap that is too small grows in a span; the error that sweeps may leave; and by how
+/// much an impact elsewhere may reduce a gap before the impact is passed on.
 inline constexpr double lift = 0x1p-3;
 inline constexpr double tolerated = 0x1p-3;
 inline constexpr double absorbed = 0x1p-2;
@@ -44,7 +44,8 @@ inline constexpr double calm_time = 4;
 inline constexpr double calm_speed = 0.15;
 inline constexpr double fastest_calm = 4;
 
-/// By how much a gap may shrink in a span: by what exceeds the room. Below half of the room it grows slightly.
+/// By how much a gap may shrink in a span: by its excess over the room. A gap below half of the room has to grow
+/// slightly.
 inline double closing(const detail::RestingContact& contact, double gap) {
   const double room = contact.room;
   if (gap > room) return gap - room;
@@ -58,8 +59,8 @@ inline double least_rate(const detail::RestingContact& contact, double gap, doub
   return -0.5 * (gap - 2 * tolerated * contact.room) / span;
 }
 
-/// Half the least relative acceleration: for which the gap along the normal has shrunk by no more than `closing` when
-/// the span ends.
+/// Half the least relative acceleration with which the gap along the normal shrinks by no more than `closing` until the
+/// span ends.
 inline double least_acceleration(double closing, double rate, double span) {
   return -(rate * span + closing) / (span * span);
 }

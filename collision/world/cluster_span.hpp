@@ -18,9 +18,9 @@ namespace cluster {
 /// Normals and accelerations depend on each other: this many times they are computed in turn.
 inline constexpr std::size_t most_passes = 4;
 
-/// By sweeps, which are quick if the pushes of a short time before are known; what they do not solve (a wedge that is
-/// squeezed, light bodies between heavy ones) by active sets. If there is no solution, since bodies fill all the room
-/// between fixed ones, no gap is made to grow: `at_least` has the bounds for that.
+/// Solves by sweeps, which are quick if the pushes of a short time before are known, and where these do not converge (a
+/// wedge that is squeezed, light bodies between heavy ones) by active sets. If there is no solution, since bodies fill
+/// all the room between fixed ones, it tries again with the bounds `at_least`, which let no gap grow.
 inline bool solve(std::vector<Eigen::Vector3d>& rates, std::vector<Touch>& touches, std::span<const double> at_least,
                   double tolerance) {
   const std::vector<Eigen::Vector3d> before = rates;
@@ -104,8 +104,8 @@ class RestingContacts<Motion>::Span {
     return solved;
   }
 
-  /// How long it may last: it ends before a gap that was left too small closes. Also sets the gap of each contact at
-  /// the end, and whether it is proven.
+  /// How long the span may last: until the first gap that was left too small would close. Also sets the gap of each
+  /// contact at the end, and whether it is proven.
   double usable() {
     for (double result = length;;) {
       pay(result);
@@ -168,8 +168,8 @@ class RestingContacts<Motion>::Span {
     return span;
   }
 
-  /// The energy that lifts contacts to their room, and that rounding adds, is taken from the speeds: the bodies end the
-  /// span with no more energy than they have before it, if it lasts for a time. The work of moving fixed bodies is not
+  /// Takes the energy that lifts contacts to their room, and that rounding adds, from the speeds: if the span lasts for
+  /// `time`, the bodies end it with no more energy than they have before it. The work of moving fixed bodies is not
   /// taken off.
   void pay(double time) {
     const auto moves = [](const Vector3d& vector) { return !vector.isZero(0); };
@@ -191,7 +191,7 @@ class RestingContacts<Motion>::Span {
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] *= 1 - gained / by_speeds;
   }
 
-  /// For how long, up to a time, no bodies penetrate.
+  /// For how long, at most `time`, no bodies penetrate.
   double provable(double time) {
     proven_.clear();
     for (std::size_t k = 0; k < touches_.size(); ++k) {

@@ -35,7 +35,7 @@ class ContactGaps {
   /// turns(), and not concave(): so the normal is known at other places too.
   bool bends(const Contact& contact) const { return turns(contact) && !concave(contact); }
 
-  /// Rate at which the two part along the normal.
+  /// The rate at which the two part along the normal.
   double parting(const Contact& contact) const;
   /// The gap along the normal. If concave(), the gap at contact.since plus the displacement since then. Precondition:
   /// they have not changed their motions since.
@@ -51,9 +51,9 @@ class ContactGaps {
   /// and with half an acceleration: there is a gap now, and the parabola of the gap is above zero at the end.
   bool proven(const Contact& contact, double rate, double half, double span) const;
 
-  /// How far the two overlap; not known if concave().
+  /// How far the two overlap; 0 if concave(), where it is not known.
   double overlap(Contact contact) const { return concave(contact) ? 0 : -nearest(contact); }
-  /// Whether they overlap by more than that. Boxes that have slid off each other overlap only along the normal.
+  /// Whether the two overlap by more than `by`. Boxes that have slid off each other overlap only along the normal.
   bool deeper(const Contact& contact, double by) const;
   /// By how much more they may overlap than when the contact began: by a billionth of the smaller size, and by the
   /// rounding of motions at this clock.

@@ -9,8 +9,8 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
-/// The law of impacts [Moreau88]: of all velocities that no contact forbids those nearest to the ones before, measured
-/// by mass. The surface takes the place of a wall.
+/// The law of impacts [Moreau88]: of all velocities that no contact forbids, those nearest to the velocities before,
+/// measured by mass. The surface takes the place of a wall.
 template <class Motion>
 Vector3d RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, double velocity) {
   Island island = find_island(id);
@@ -20,7 +20,7 @@ Vector3d RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, dou
   const auto still = static_cast<std::uint32_t>(island.bodies.size());
   island.touches.push_back({still, of_[id].place, normal, 0, bodies_[id].inverse_mass, 0, velocity});
   least_constraint(velocities, island.touches);
-  // Should the others not give way, the body is driven none the less, and meets them.
+  // The body is driven even if the others do not give way; then it meets them.
   Touch& driven = island.touches.back();
   const double lacks = velocity - parting_rate(velocities, driven);
   if (lacks > 0) give_push(velocities, driven, lacks);

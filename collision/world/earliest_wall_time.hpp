@@ -57,8 +57,8 @@ double earliest_wall_time(const certificates::PointMotion<Degree>& motion, doubl
 
 namespace detail {
 
-/// How many seconds from now on that time is away, for two coordinates at a time; `never` where one does not move.
-/// Without a branch, since processors cannot predict which walls bodies approach.
+/// The wait in seconds from now to that time, for two coordinates at once; `never` where one does not move. Without a
+/// branch, since processors cannot predict which walls bodies approach.
 inline Two wait_for_wall(Two at, Two speed, Two elapsed, Two radius, Two low, Two high) {
   const Two moved = speed * elapsed;
   const Two plane = speed > 0 ? high : low;
@@ -78,7 +78,7 @@ inline double after_wait(double wait, double now) {
 
 }  // namespace detail
 
-/// The earliest of all walls'.
+/// The earliest of these times for all six walls.
 template <int Degree>
 double earliest_wall_time_of_all(const certificates::PointMotion<Degree>& motion, double radius, const Walls& walls,
                                  double now) {
@@ -100,7 +100,7 @@ inline double earliest_wall_time_of_all(const certificates::PointMotion<1>& moti
   return detail::after_wait(std::min({xy[0], xy[1], z[0]}), now);
 }
 
-/// The same of two balls, in less time than one by one.
+/// The same for two balls at once, in less time than one by one.
 inline std::array<double, 2> earliest_wall_times_of_all(
     const std::array<const certificates::PointMotion<1>*, 2>& motions, Two radii, const Walls& walls, double now) {
   const Two elapsed{now - motions[0]->start, now - motions[1]->start};

@@ -24,7 +24,7 @@ class EditLimit {
                              " s; WorldOptions.most_edits allows no more");
   }
 
-  /// Whether they are counted from a time not after this.
+  /// Whether the count began not after `now`.
   bool began_by(double now) const { return since_ <= now; }
 
   template <class Archive>

@@ -27,7 +27,7 @@
 namespace kds::collision {
 namespace {
 
-/// The least that the least moment of inertia of a body that precesses may be of the greatest.
+/// The least ratio of the least to the greatest moment of inertia of a body that precesses.
 constexpr double flattest_inertia = 0x1p-40;
 
 template <class Motion>
@@ -176,7 +176,7 @@ BodyId Engine<Motion>::add_body(const Description& description) {
   return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape), principal); }));
 }
 
-/// A null shape stands for a ball that is not turned.
+/// Null for a ball that is not rotated.
 template <class Motion>
 inline BodySlot Engine<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
                                     [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
@@ -201,7 +201,7 @@ inline BodySlot Engine<Motion>::put(const Description& description, std::shared_
   return slot;
 }
 
-/// From the first mesh on all volumes include contact gaps: those of bodies that are there already are enlarged now.
+/// As soon as there is a mesh all volumes include contact gaps: this enlarges the volumes of the bodies that are there.
 template <class Motion>
 void Engine<Motion>::make_room_for_meshes() {
   if (!volumes_.make_room_for_meshes()) return;
@@ -210,7 +210,7 @@ void Engine<Motion>::make_room_for_meshes() {
   }
 }
 
-/// Reports a volume to the broad phase that has changed although nothing has moved.
+/// Tells the broad phase of a volume that has changed although nothing has moved.
 template <class Motion>
 void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
   if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
@@ -218,7 +218,7 @@ void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degre
   volumes_.schedule(slot);
 }
 
-/// Of bodies that enter in parts the broad phase is told at the first.
+/// Tells the broad phase of all bodies that are about to enter; if they do so in several parts, before the first.
 template <class Motion>
 void Engine<Motion>::expect_new_bodies() {
   constexpr std::size_t sample = 256;
@@ -318,7 +318,7 @@ template <class Motion>
 void Engine<Motion>::take_out(BodySlot slot) {
   if (bounced_ == slot) bounced_ = no_body;
   resting_.forget(slot);
-  if (self_contacts_.touching(slot)) {  // It ceases to, unless that it does has not been reported yet.
+  if (self_contacts_.touching(slot)) {  // Reports the separation, or nothing if the overlap has not been reported yet.
     const BodyId id = bodies_.id_of(slot);
     if (!reports_.take_back(Reports::Kind::overlap, id, id)) {
       reports_.add(Reports::Kind::separation, id, id, self_contacts_.contact(slot));

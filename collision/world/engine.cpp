@@ -104,8 +104,8 @@ void Engine<Motion>::rebuild_broad_phase() {
   pairs_.list_anew(found.pairs);
 }
 
-/// A search for an event without a limit has found none, and gone beyond all times: the clock is put back. In
-/// between, bounding volumes have met and parted, and nothing else has happened.
+/// Puts the clock back after a search without a limit has found no event: the search has moved it beyond all times at
+/// which bounding volumes meet and part, and nothing else has happened since.
 template <class Motion>
 void Engine<Motion>::go_back(double t) {
   if (clock_.now == t) return;

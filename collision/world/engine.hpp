@@ -54,8 +54,8 @@ struct TurningImpact {
   bool approach = false;  ///< at the contact; if not they move as before
 };
 
-/// What is behind a BasicWorld (world.hpp, which documents the public functions): it owns the parts (docs/design.md),
-/// lets the one whose event is next process it, passes the consequences on to the others, and calls the listener.
+/// The implementation of a BasicWorld (world.hpp documents the public functions): it owns the parts (docs/design.md),
+/// lets the part whose event is next process it, passes the consequences on to the other parts, and calls the listener.
 template <class BodyMotionType>
 class Engine final : private RestingListener<BodyMotionType> {
  public:
@@ -119,15 +119,15 @@ class Engine final : private RestingListener<BodyMotionType> {
   void archive(Archive& archive);
 
   // transfer.cpp: bodies that several worlds have, each for a part of the scene (parallel/parallel_world.hpp). A world
-  // takes in bodies of another one in the middle of their history, and what follows is the same, bit for bit: their
-  // motions, scripts and counts are those of the other world, their pairs begin as those of bodies that move past each
+  // takes in bodies of another one in the middle of their history, and all that follows is the same, bit for bit: they
+  // have the motions, scripts and counts of the other world, their pairs begin as pairs of bodies that move past each
   // other do, and pairs that overlap there overlap here.
   /// Two bodies, by slots, that overlap, and Pair::passes_at.
   struct Overlap {
     BodySlot a, b;
     double passes_at;
   };
-  /// Whether nothing decides later events but descriptions, scripts and progress of bodies, and the pairs that overlap.
+  /// Whether descriptions, scripts and progress of bodies, and the pairs that overlap, decide all later events.
   bool is_divisible() const;
   const Scripts<Motion>& scripts() const { return scripts_; }
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
@@ -144,20 +144,20 @@ class Engine final : private RestingListener<BodyMotionType> {
   BodyProgress<Motion> progress(BodySlot slot) const {
     return {bodies_.motion(slot), bodies_[slot].meetings, bodies_[slot].burst_start, tumbling_.progress(slot)};
   }
-  /// A body of this world is as another world has it, whose body it is. The first, for different bodies, may be called
-  /// by several threads at once.
+  /// A body that belongs to another world continues from its state there. The first, for different bodies, may be
+  /// called by several threads at once.
   void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress);
   void note_meeting(BodySlot slot) { resting_.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
   bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
-  /// Of worlds that only store bodies, each a part. As plain data; `meshes`: all that there are in the scene.
+  /// Bodies of a world that only stores a part of them, as plain data. `meshes`: all meshes of the scene.
   Parcel<Motion> pack(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
   /// Stores those of a parcel, with their numbers; attach() follows. Returns the slots, in the same order.
   std::vector<BodySlot> store(const Parcel<Motion>& parcel);
   void attach(BodySlot sensor, BodySlot owner) { bodies_.attach(sensor, owner); }
   /// Forgets bodies that have been stored.
   void forget(std::span<const BodySlot> slots);
-  /// Bodies that have been added have these numbers, from the first on.
+  /// The bodies that have been added get the numbers `first`, `first` + 1, ...
   void number_from(BodySlot first) { bodies_.number_from(first); }
   /// Others store the bodies of this world, and it forgets them until take_back(); then they are put_back() one by one,
   /// and it is whole with go_on(). `bodies`: of so many that have been added elsewhere.
@@ -165,8 +165,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void lend(std::size_t bodies) { bodies_.lend(bodies); }
   void take_back() { bodies_.take_back(); }
   void put_back(const Parcel<Motion>& parcel);
-  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Returns timers that have
-  /// rung.
+  /// Other worlds have run to t: bodies have entered, pieces of scripts have begun. Returns the timers that have rung.
   std::vector<Timers::Image::One> note_passed(double t);
   /// Forgets all but the bodies, until go_on().
   void set_aside();
@@ -319,7 +318,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
   bool bends(BodySlot a, BodySlot b) const { return bends(a) || bends(b); }
   SurfaceRate surface_rate(BodySlot slot, const Contact& contact, bool is_a) const;
-  /// That of b less that of a.
+  /// The velocity of the surface of b less that of the surface of a.
   Eigen::Vector3d surface_velocity(BodySlot a, BodySlot b, const Contact& contact) const;
   double rebound_off_surface(BodySlot a, BodySlot b, const Contact& contact, double approach,
                              std::uint64_t burst) const;
@@ -343,7 +342,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);
 
-  /// A motion changes that is not one of the event's.
+  /// Changes the motion of a body that takes no part in the event, and reports it.
   void change_motion(BodySlot slot, const Motion& motion);
   // Reports of resting contacts (RestingListener).
   void take_up(BodySlot slot, const Motion& motion) override;
@@ -395,7 +394,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   double idle_until_ = -never;       ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;       ///< no event comes at all; an edit resets it
   double next_time_ = -never;        ///< the result of next_time(); -never if there is none
-  /// The body that has bounced off a wall, while that is reported: if it is not removed, parts take up its motion then.
+  /// While a bounce off a wall is reported: the body, whose new motion the parts do not know yet, as it is often
+  /// removed.
   BodySlot bounced_ = no_body;
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown

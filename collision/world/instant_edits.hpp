@@ -14,8 +14,8 @@
 namespace kds::collision {
 
 /// Jumps, changes of filters and of ignored pairs at one instant, for pairs that the broad phase finds later at that
-/// instant: whether such a pair begins by an edit or by motion decides how an overlap of its bodies is met. What was
-/// changed at an earlier instant is forgotten with the first edit of another.
+/// instant: whether such a pair begins by an edit or by motion decides how an overlap of its bodies is met. The first
+/// edit of another instant makes it forget all earlier ones.
 ///
 /// Cost: O(log n) of n edits each; O(f g) more to ask about two bodies that have had f and g different filters.
 class InstantEdits {
@@ -31,7 +31,7 @@ class InstantEdits {
     if (std::find(had.begin(), had.end(), before) == had.end()) had.push_back(before);
   }
   void add_ignored(BodySlot a, BodySlot b, double now) { begin(now), ignored_.add(a, b); }
-  /// The next body of this slot has done nothing of what this one did.
+  /// Forgets all that was done to a body that is removed: another body may get its slot.
   void forget(BodySlot body) { jumped_.erase(body), had_.erase(body), ignored_.forget(body); }
 
   bool has_jumped(BodySlot body, double now) const { return at_ == now && jumped_.contains(body); }
@@ -46,7 +46,7 @@ class InstantEdits {
            std::any_of(had_a.begin(), had_a.end(), [&](const auto& filter) { return kept_apart(filter, had_b); });
   }
 
-  /// All that was done at `now`, in the order of the bodies; filters of one body in the order in which it had them.
+  /// All edits at `now`, in the order of the bodies; the filters of one body in the order in which it had them.
   struct Image {
     std::vector<BodySlot> jumped;
     std::vector<Filtered> filtered;

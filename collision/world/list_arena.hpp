@@ -64,7 +64,7 @@ class ListArena {
     list = {};
   }
 
-  /// All lists are lost.
+  /// Frees all lists; their handles are invalid from then on.
   void clear() {
     used_ = 0;
     for (auto& free : free_) free.clear();

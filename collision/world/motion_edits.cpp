@@ -64,7 +64,7 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
   change_or_fail([&] { scripts_.append(slot, pieces); });
 }
 
-/// Of a body that keeps its orientation, and of one that precesses.
+/// Checks what is required of the motions of a body that keeps its orientation, and of one that precesses.
 template <class Motion>
 void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {

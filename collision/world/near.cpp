@@ -69,7 +69,7 @@ void Engine<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double u
   const StaticBox swept = bounded_swept_box(box, from, until);
   const auto ask = [&](const auto& look) {
     broad_phase_->visit_swept(box, from, until, look);
-    // Of meshes that bend it knows the present piece alone.
+    // The broad phase knows only the present piece of a mesh that bends.
     for (BodySlot slot = 0; slot < volumes_.end_of_bent(); ++slot) {
       if (volumes_.bends(slot) && bodies_.entered(slot)) look(slot);
     }

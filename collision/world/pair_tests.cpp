@@ -35,13 +35,13 @@ bool at_rest(const certificates::RigidMotion<Degree>& motion) {
   return at_rest(motion.path) && motion.angular_velocity.isZero(0);
 }
 
-/// Whether the place of nothing in it changes.
+/// Whether no point of the body moves.
 template <class Motion>
 bool at_rest(const MovingShape<Motion>& body) {
   return at_rest(body.motion) && !bends(body.shape.shape);
 }
 
-/// The same place for good, moved by a way.
+/// A body at rest at this place, displaced.
 template <int Degree>
 certificates::PointMotion<Degree> standing(const certificates::PointMotion<Degree>& motion, double t,
                                            const Vector3d& way) {
@@ -59,11 +59,12 @@ certificates::RigidMotion<Degree> standing(const certificates::RigidMotion<Degre
   return place;
 }
 
-/// Bodies that have been put so near that nothing but rounding is between them, this times their coordinates: they
-/// touch, and so meet if they approach, and rest if they are pressed together. Larger takes more for a touch.
+/// Bodies that were placed with a gap or an overlap up to this, relative to their coordinates, touch: nothing but
+/// rounding is between them. They meet if they approach, and rest if they are pressed together. A larger value takes
+/// more overlaps for touches.
 constexpr double touch_rounding = 0x1p-40;
 
-/// Whether bodies in contact at t only touch: at rest in their places, and a rounding farther apart, they are free.
+/// Whether bodies in contact at t only touch: a rounding farther apart, at rest, they would not be in contact.
 template <class Motion>
 bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t) {
   const Contact contact = contact_at(a, b, t);
@@ -89,7 +90,8 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
 
 }  // namespace
 
-/// Up to when a pair is tested: that is seen anew when a piece of the motion of a body that precesses ends.
+/// Up to which time a pair is tested: at most to the end of a piece of the motion of a body that precesses, when it is
+/// tested anew.
 template <class Motion>
 double Pairs<Motion>::horizon(const Pair& pair) const {
   if constexpr (turns<Motion>) {
@@ -98,8 +100,8 @@ double Pairs<Motion>::horizon(const Pair& pair) const {
   return clock_.horizon;
 }
 
-/// Most tests by far are these, and need two cache lines. They change nothing but estimates_: for some of the dirty
-/// pairs, a time before which the balls do not meet, as BallsTogether tells it.
+/// By far most tests are of two balls, and need two cache lines. This changes nothing but estimates_: for some of the
+/// dirty pairs, a time from BallsTogether before which the balls do not meet.
 template <class Motion>
 void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
   certificates::BallsTogether<Motion::degree> together;
@@ -146,8 +148,8 @@ void Pairs<Motion>::estimate_dirty(std::size_t from) {
            [&](std::size_t, std::size_t first, std::size_t last) { estimate_balls(from + first, from + last); });
 }
 
-/// Tests the dirty pairs, from the first on, that rest on each other, and leaves the others. Most of a heap need no
-/// test, since the resting contact keeps them apart.
+/// Of the dirty pairs, tests those that rest on each other, from the first on, and leaves the others. Most pairs of a
+/// heap need no test, since the resting contact keeps them apart.
 template <class Motion>
 void Pairs<Motion>::test_resting(std::size_t first) {
   std::size_t others = first;
@@ -272,7 +274,7 @@ void Pairs<Motion>::set_contact(Slot slot, double time) {
   contacts_.set(slot, time);
 }
 
-/// Most bounds never come first, since motions change before.
+/// Most bounds are never certified, since the motions change before they are due.
 template <class Motion>
 bool Pairs<Motion>::certify() {
   const Slot slot = contacts_.top().slot;
@@ -287,7 +289,7 @@ bool Pairs<Motion>::certify() {
   }
   FoundTouch found;
   const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
-  // Of bodies that turn exact tests look for some turns only: each goes on where the last has ended.
+  // Exact tests of bodies that turn look only a few turns ahead: each goes on where the last one has ended.
   const double from = turns<Motion> ? contacts_.time(slot) : clock_.now;
   const ContactEstimate next =
       pair.overlapping

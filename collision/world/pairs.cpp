@@ -23,7 +23,7 @@ Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volume
       contacts_(detail::PairRank{&pairs_, &bodies.numbers()}),
       boxes_(detail::PairRank{&pairs_, &bodies.numbers()}) {}
 
-/// Reserves room for them and some more, if they are the first.
+/// Reserves room for these pairs and some more, if they are the first.
 template <class Motion>
 void Pairs<Motion>::pairs_to_come(std::size_t pairs) {
   if (!pairs_.empty()) return;
@@ -262,7 +262,7 @@ bool Pairs<Motion>::listed(BodySlot a, BodySlot b) const {
   return slot != none && pairs_[slot].listed;
 }
 
-/// Without making shapes of balls.
+/// Does not make the shapes of balls.
 template <class Motion>
 Contact Pairs<Motion>::contact(BodySlot a, BodySlot b, double t, const FoundTouch& found) const {
   const auto& of_a = bodies_.mover(a);

@@ -38,7 +38,7 @@ struct Pair {
   std::uint32_t place_in_a = 0, place_in_b = 0;  ///< in the lists of the two bodies
   bool alive = false;
   bool listed = false;  ///< by the broad phase, or by Unbounded
-  bool dirty = false;   ///< to be tested
+  bool dirty = false;   ///< its contact time has to be computed anew
   bool fresh = false;   ///< one of the bodies has entered or jumped at this instant
   /// In contact, in mode `none`; in the modes that resolve contacts, let pass. Its next event is that they separate.
   bool overlapping = false;
@@ -136,7 +136,7 @@ class Pairs final : public PairListener {
   /// A time up to which the ball around the body meets none around others, whatever the orientations; now, or earlier,
   /// where that is not known. The balls are larger than they need be by this part of their radii.
   double alone_until(BodySlot id, double larger) const;
-  /// A body has another box, and moves as before.
+  /// A body has another box, and its motion is unchanged.
   void box_changed(BodySlot id);
   /// The next contact of the two has to be found anew.
   void changed(BodySlot a, BodySlot b);
@@ -159,7 +159,7 @@ class Pairs final : public PairListener {
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.
   void remove(BodySlot id);
 
-  /// Tests dirty pairs, all or so many of them.
+  /// Tests dirty pairs: `most` of them, or all if there are no more.
   void test(std::size_t most = ~std::size_t{0});
   bool tested() const { return dirty_.empty(); }
 
@@ -192,7 +192,7 @@ class Pairs final : public PairListener {
   /// penetrate or are about to separate at this instant.
   void audit(double t) const;
 
-  /// All of it, as plain data, in the order of (a, b).
+  /// The whole state as plain data, in the order of (a, b).
   struct Image {
     struct One {
       Pair pair;

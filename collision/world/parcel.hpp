@@ -9,9 +9,8 @@
 
 namespace kds::collision {
 
-/// All that there is of some bodies, but for what there is between them: who is attached to whom, and ignores whom.
-/// Meshes do not travel: who reads a parcel has the same list of them as who has written it, and puts it into
-/// `bodies.meshes` before.
+/// The whole state of some bodies without what connects them: attachments and ignored pairs. Meshes are not sent: the
+/// reader of a parcel has the same list of meshes as its writer, and puts it into `bodies.meshes` before.
 template <class Motion>
 struct Parcel {
   std::vector<BodySlot> numbers{};

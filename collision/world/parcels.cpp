@@ -1,4 +1,4 @@
-// How bodies come to be stored by several processes, of which each has a part, and by one world again.
+// How the bodies of a world are divided among several processes, which store a part each, and put back into one world.
 #include "collision/motions.hpp"
 #include "collision/world/engine.hpp"
 #include "collision/world/parcel.hpp"
@@ -24,7 +24,7 @@ Parcel<Motion> Engine<Motion>::pack(std::span<const BodySlot> slots,
   return parcel;
 }
 
-/// What a body of a parcel does later is as it was.
+/// The later events of a body in a parcel do not change.
 template <class Motion>
 void Engine<Motion>::resume(const Parcel<Motion>& parcel, std::size_t place, BodySlot slot) {
   const std::vector<Motion>& to_come = parcel.to_come[place];

@@ -9,8 +9,8 @@
 
 namespace kds::collision {
 
-/// What rests on a body, or below it, is to be balanced anew. Its script goes on. Precondition: it has entered, and
-/// `motion` is the one that it would have without its contacts.
+/// The bodies that rest on a body, or that it rests on, have to be solved for anew. Its script goes on. Precondition:
+/// it has entered, and `motion` is the one that it would have without its contacts.
 template <class Motion>
 void Engine<Motion>::move_freely(BodySlot slot, const Motion& motion) {
   resting_.leave(slot);
@@ -48,12 +48,12 @@ void Engine<Motion>::set_restitution(BodyId id, double restitution) {
   bodies_[slot].restitution = restitution;
 }
 
-/// Changes with which others a body that has entered may collide. It leaves the broad phase and comes back. In between
-/// its pairs have ended, except for those that overlap.
+/// Changes with which others a body that has entered may collide. The body leaves the broad phase, which ends all its
+/// pairs except those that overlap, and enters it again.
 template <class Motion>
 template <class Change>
 void Engine<Motion>::filter_anew(BodySlot slot, const Change& change) {
-  // What is due by now belongs to the time before.
+  // Events of the broad phase that are due happen before the change.
   while (broad_phase_->advance(clock_.now, pairs_)) {
   }
   const Motion free = free_motion(bodies_.id_of(slot));

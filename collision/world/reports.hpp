@@ -81,7 +81,7 @@ class Reports {
   Report with_user_data(Report report) const;
   void drop_first();
 
-  /// The first is none that is dropped.
+  /// In their order; the first is never one of those that are dropped.
   std::multiset<Report> reports_;
   /// Bodies that have been removed while there were reports, with their user data. To look through the reports at each
   /// removal would take time quadratic in the bodies that are removed at one instant.

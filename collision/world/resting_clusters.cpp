@@ -45,7 +45,7 @@ double RestingContacts<Motion>::longest_span(BodySlot id) const {
   return a > 0 ? part_of_fall * std::sqrt(bodies_[id].bounding_radius / a) : never;
 }
 
-/// Whether two bodies that part at this rate are back within a span: so short a flight counts as contact.
+/// Whether two bodies that part at this rate meet again within a span: so short a flight counts as contact.
 template <class Motion>
 bool RestingContacts<Motion>::soon_back(const Contact& contact, double rate) const {
   if (contact.b == no_body || !(contact.fresh || contact.push > 0)) return false;
@@ -57,7 +57,7 @@ bool RestingContacts<Motion>::soon_back(const Contact& contact, double rate) con
   return false;
 }
 
-/// Makes a cluster of all that leans on a body, with a span that ends then.
+/// Makes a cluster of all bodies that lean on a body, with a span that ends at the given time.
 template <class Motion>
 void RestingContacts<Motion>::gather(BodySlot id, double ends) {
   if (bodies_.numbered()) throw RestsInPart();

@@ -21,7 +21,7 @@ constexpr double slack = 0x1p-20;
 /// The same relative to the coordinates, which are rounded whenever a motion is restarted.
 constexpr double coordinate_slack = 0x1p-40;
 
-/// How far a mesh in a cluster may sink beyond its contacts of this moment, by rounding, before that is a new contact;
+/// How far a mesh in a cluster may sink by rounding beyond its present contacts before that counts as a new contact;
 /// relative to the smaller bounding radius.
 constexpr double approach_slack = 0x1p-37;
 

@@ -64,8 +64,8 @@ class RestingListener {
   ~RestingListener() = default;
 };
 
-/// Thrown where contacts would begin to rest, or be remembered because they may, in a world of bodies that are those of
-/// another one (transfer.cpp): what rests on each other is not divided among worlds.
+/// Thrown where a contact would begin to rest, or to be remembered because it may rest, in a world whose bodies belong
+/// to another one (transfer.cpp): bodies that rest on each other are not divided among worlds.
 struct RestsInPart : std::exception {
   const char* what() const noexcept override { return "World: a part of a world, in which something comes to rest"; }
 };
@@ -73,7 +73,7 @@ struct RestsInPart : std::exception {
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
 /// docs/resting.md states the law.
 ///
-/// A part of World that owns its state and its queue. It reads the bodies, and tells its listener what follows.
+/// This part of World owns its state and its queue. It reads the bodies, and tells its listener what follows.
 ///
 /// Cost: nothing while nothing rests. O(1) a contact that begins or ends; a change of motion of a body that rests
 /// solves for all bodies of its island (least_constraint.hpp).
@@ -97,7 +97,7 @@ class RestingContacts {
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
-  /// Whether nothing rests, and no cluster goes on: but for has_met(), nothing decides what comes to rest later.
+  /// Whether nothing rests and there is no cluster: then only has_met() decides what comes to rest later.
   bool remembers_nothing() const { return empty() && spans_.empty(); }
   /// A contact of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
@@ -123,7 +123,7 @@ class RestingContacts {
     if (id < of_.size()) of_[id] = {};
   }
 
-  /// A body is moved by a caller: it is in no cluster until it is gathered again.
+  /// A caller moves a body: it leaves its cluster.
   void leave(BodySlot id) {
     if (!clustered(id)) return;
     of_[id].span_ends = -never;

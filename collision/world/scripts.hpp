@@ -14,8 +14,8 @@
 
 namespace kds::collision {
 
-/// The scripts of a world's bodies: for each the pieces of motion to come, and the time at which the next one of all
-/// begins.
+/// The scripts of a world's bodies: for each body the pieces of motion to come, and the time at which the next piece of
+/// any body begins.
 ///
 /// Cost: nothing for bodies without a script; O(log n) a piece.
 template <class Motion>

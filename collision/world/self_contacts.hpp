@@ -24,7 +24,7 @@ class SelfContacts {
 
   /// A body has entered. True if it touches itself.
   bool enter(BodySlot slot);
-  /// Its vertices have another way to go.
+  /// Its script has changed.
   void changed(BodySlot slot) {
     if (follows(slot)) find_next(slot);
   }

@@ -1,4 +1,4 @@
-// How the bodies of one world become those of others, each for a part of the scene, and those of one again.
+// How the bodies of one world are divided among several, each for a part of the scene, and come back into one.
 #include "collision/motions.hpp"
 #include "collision/world/engine.hpp"
 
@@ -45,7 +45,8 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<cons
   });
 }
 
-/// Which of the bodies that come are attached to each other, and which never meet each other or one that was here.
+/// Which of the bodies that are taken in are attached to each other, and which pairs of these, or of one of these and
+/// one that was here before, are ignored.
 template <class Motion>
 void Engine<Motion>::relate(const Engine& from, std::span<const BodySlot> slots, std::span<const BodySlot> taken,
                             std::span<const BodySlot> known, const IgnoredPairs& ignored) {

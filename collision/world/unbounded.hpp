@@ -34,7 +34,7 @@ class Unbounded {
     begin_pairs(slot);
     pairs_.set_begin(Pairs<Motion>::Begin::moving);
   }
-  /// A body is removed: its pairs with these, or with all others, end.
+  /// A body is removed: its pairs with unbounded bodies end, or if it is one of them all its pairs.
   void remove(BodySlot slot) {
     end_pairs(slot);
     std::erase(slots_, slot);
@@ -52,7 +52,7 @@ class Unbounded {
     });
   }
 
-  /// All bodies have been replaced, or may have been.
+  /// Finds the unbounded bodies again, after all bodies have been replaced.
   void find() {
     slots_.clear();
     for (BodySlot slot = 0; slot < all_.slots(); ++slot) {

@@ -29,7 +29,7 @@ std::vector<KdopDirection> directions_of(const WorldOptions& options) {
   return {all.begin() + 3, all.end()};
 }
 
-/// A body that is one, in world orientation.
+/// The half-space of a body that is one, in world orientation.
 template <class Motion>
 HalfSpace half_space(const Bodies<Motion>& bodies, BodySlot slot) {
   return half_space_of(*bodies[slot].shape, bodies.motion(slot));
@@ -82,7 +82,8 @@ void Volumes<Motion>::add(BodySlot slot, const BoxFunction& function) {
   given_[slot] = std::make_unique<Given>(Given{function, {}});
 }
 
-/// The bounds of a body that is new, has another shape, or bends on. Its volume is not the caller's.
+/// Computes the bounds of a body that is new, has another shape, or begins the next piece of its script. Its volume is
+/// not the caller's.
 template <class Motion>
 void Volumes<Motion>::note_shape(BodySlot slot) {
   if (bodies_.unbounded(slot)) return;

@@ -22,12 +22,12 @@
 
 namespace kds::collision {
 
-/// The bounding volume of each body for the broad phase: a kinetic box, for kinetic sweep and prune perhaps a k-DOP,
-/// and until when they contain the body.
+/// The bounding volume of each body for the broad phase, and until when it contains the body. It is a kinetic box or,
+/// for kinetic sweep and prune, perhaps a k-DOP.
 ///
-/// Boxes are made from shape and motion, or by the caller's function. From the first mesh on all include the contact
-/// gaps of meshes (mesh_margins.hpp). Most contain their body at all later times; those of meshes that bend until the
-/// next keyframe.
+/// Boxes are made from shape and motion, or by the caller's function. As soon as there is a mesh all boxes include the
+/// contact gaps of meshes (mesh_margins.hpp). Most boxes contain their body at all later times; those of meshes that
+/// bend only until the next keyframe.
 ///
 /// Cost: O(1) a volume; nothing is stored for bodies whose volumes never end, except for k-DOPs.
 template <class Motion>
@@ -44,7 +44,7 @@ class Volumes {
 
   /// Whether some volumes have ends, after which they are renewed.
   bool any_ends() const { return meshes_ || !given_.empty() || !bent_.empty(); }
-  /// Whether the body's volume is around the piece of a mesh that bends alone.
+  /// Whether the volume of the body, a mesh that bends, is that of the present piece of its script only.
   bool bends(BodySlot slot) const { return slot < bent_.size() && bent_[slot]; }
   std::size_t end_of_bent() const { return bent_.size(); }  ///< no slot from this on bends
 
@@ -75,8 +75,8 @@ class Volumes {
   bool overlap(BodySlot a, BodySlot b, double t, bool exact) const;
 
   /// Whether a body's volume, rounded outward, meets a box at t; and whether its swept AABB meets a swept one. If the
-  /// caller's function has not been called yet, since the body is still to enter, the box is that around its ball. A
-  /// half-space meets a box as it is.
+  /// caller's function has not been called yet, since the body is still to enter, the box is that around its ball. For
+  /// a half-space it is tested whether the box meets the half-space itself.
   bool meets(BodySlot slot, const StaticBox& box, double t) const;
   bool meets_swept(BodySlot slot, const StaticBox& swept, double from, double until) const;
 

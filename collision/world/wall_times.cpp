@@ -93,7 +93,7 @@ bool WallTimes<Motion>::certify() {
     bounds[static_cast<std::size_t>(wall)] =
         earliest_wall_time(bodies_.path(slot), bodies_[slot].bounding_radius, *walls_, wall, clock_.now);
   }
-  // The one that is probably the first comes first: then the bounds of the others are mostly later than its time.
+  // The wall that is probably met first is tested first: the bounds of the other walls are mostly later than its time.
   const int probable = static_cast<int>(std::min_element(bounds.begin(), bounds.end()) - bounds.begin());
   double first = never;
   wall_[slot] = 0;

@@ -37,7 +37,7 @@ class WallTimes {
 
   /// A time up to which no body reaches a wall.
   double next_time() const { return times_.empty() ? never : times_.top().time; }
-  /// The body that this is the time of. Precondition: next_time() < never.
+  /// The body to which next_time() belongs. Precondition: next_time() < never.
   BodySlot next_body() const { return times_.top().slot; }
   /// If next_time() is only a bound, replaces it by the exact time, which may be later; true if it was one.
   bool certify();

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double width = 480, height = 300, margin = 16;
 // Those of page/style.css for elements, as far as a page has one for each; then the one for points.
-constexpr const char* colours[] = {"#1d5fd1", "#b4480b", "#14783a", "#8330c9", "#b01850", "#0b7285", "#86600a", "#4b5666"};
+constexpr const char* colours[] = {"#1d5fd1", "#b4480b", "#14783a", "#8330c9",
+                                   "#b01850", "#0b7285", "#86600a", "#4b5666"};
 constexpr const char* colour_of_points = "#38414f";
 
 double value(const std::vector<double>& coefficients, double elapsed) {
@@ -90,7 +91,8 @@ std::string Page::picture() const {
       svg += "<path stroke=\"" + colour + "\" stroke-width=\"4\" d=\"" + line + "\"/>";
     }
     const auto [u, v] = seen(element, now);
-    const std::string body = "fill-opacity=\".3\" stroke=\"" + colour + "\" stroke-width=\"3\" fill=\"" + colour + "\"/>";
+    const std::string body =
+        "fill-opacity=\".3\" stroke=\"" + colour + "\" stroke-width=\"3\" fill=\"" + colour + "\"/>";
     if (element.half[0] > 0) {
       const auto [w, h] = element.half;
       svg += "<path d=\"M" + across(u - w) + ' ' + down(v - h) + 'H' + across(u + w) + 'V' + down(v + h) + 'H' +

@@ -179,7 +179,8 @@ inline void PlaceQueue::make_groups() {
     count = (count + group - 1) / group;
     begins_[levels_] = groups_.size();
     Group none{};
-    for (std::size_t i = 0; i < group; ++i) none.keys[i] = no_event((std::uint64_t{levels_ + 1} << 34) + i);  // unlike a line's
+    for (std::size_t i = 0; i < group; ++i)
+      none.keys[i] = no_event((std::uint64_t{levels_ + 1} << 34) + i);  // unlike a line's
     groups_.resize(groups_.size() + count, none);
   }
 }

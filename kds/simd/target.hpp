@@ -1,5 +1,5 @@
 // Instructions of the target processor, where they are faster than portable code: kds::simd::target has the functions
-// of portable.hpp. For the lane types of this folder; others include those.
+// of portable.hpp. Only the lane types of this folder include it; all other code includes the lane types.
 #pragma once
 
 #ifdef __SSE2__

@@ -58,8 +58,8 @@ struct NoRuleEdits {
 /// things that are wrong. `edit(structure, random, now)`, if given, may change the rule by Kinetic::edit(). All must be
 /// functions of their arguments: the run is repeated.
 ///
-/// Elements come, go, jump, turn, restart where they are, and take up the motion of another, so that the two are one
-/// for ever. After every event and edit all certificates and failure times are audited with exact signs (so a wrong
+/// Elements come, go, jump, turn, restart where they are, and are given the motion of another, so that the two stay at
+/// one place. After every event and edit all certificates and failure times are audited with exact signs (so a wrong
 /// certificate is found when it is made). Half way a snapshot is taken; the second half is run twice from it, and must
 /// give the same events and end in the same bytes. In the end, if elements are Reversible, time runs back for a while
 /// and forward again, with the same checks. What the structure throws counts as wrong.

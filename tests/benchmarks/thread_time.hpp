@@ -15,8 +15,8 @@ inline double thread_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Seconds of CPU time that a call takes, the least of some rounds. Reading the clock takes about a microsecond, so that
-/// calls of a few are timed together: as many of them as take a hundred.
+/// Seconds of CPU time that a call takes, the least of some rounds. Reading the clock takes about a microsecond, so
+/// that calls of a few are timed together: as many of them as take a hundred.
 template <class Call>
 double seconds_of_call(int rounds, const Call& call) {
   constexpr double enough = 1e-4;

@@ -4,8 +4,8 @@
 //
 // All files first, then N inputs from the seeds FIRST, FIRST + 1 ... (default 1). The environment variable
 // KDS_FUZZ_RUNS, if set, is instead of --runs. A failure, whatever its kind, is reported with its file or seed, and the
-// program exits with 1, or as crashes do; `--runs 1 --seed S` with the same files makes the input again. What has failed
-// without a crash is written to the file `failed-input`. A file that cannot be read is refused with 2.
+// program exits with 1, or as crashes do; `--runs 1 --seed S` with the same files makes the input again. What has
+// failed without a crash is written to the file `failed-input`. A file that cannot be read is refused with 2.
 #include "tests/fuzz/check.hpp"
 #include "tests/support/random_numbers.hpp"
 

@@ -26,8 +26,8 @@ function(count_of word file variable)
   set(${variable} ${count} PARENT_SCOPE)
 endfunction()
 
-# Balls on the places of a lattice, with speeds of a lattice; each seventh is a sensor; walls; and the same that fall and
-# come to rest.
+# Balls on the places of a lattice, with speeds of a lattice; each seventh is a sensor; walls; and the same that fall
+# and come to rest.
 function(lattice name restitution bend)
   set(bodies "")
   foreach(i RANGE 215)

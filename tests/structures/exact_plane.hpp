@@ -49,7 +49,8 @@ class ExactPlane {
   }
   /// Sign of 2 r - |a - b|.
   int compare_diameter(double r, Id a, Id b) const {
-    return (oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - squared_distance(a, b)).sign_after(now_);
+    return (oracle::Polynomial(4 * oracle::rational(r) * oracle::rational(r)) - squared_distance(a, b))
+        .sign_after(now_);
   }
   /// Sign of r - the radius of the circle through a, b, c: by the law of sines at c. Precondition: these turn left.
   int compare_circle(double r, Id a, Id b, Id c) const {

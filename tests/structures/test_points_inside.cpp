@@ -144,7 +144,8 @@ TEMPLATE_TEST_CASE("points are in the regions that they are in", "[points_inside
       CAPTURE(static_cast<int>(kind), seed);
       Random random(seed);
       Scene<TestType> scene(beginning(kind));
-      for (Id id = 0; id < 8; ++id) scene.points.insert(id, made<Point>(random, kind, beginning(kind)), beginning(kind));
+      for (Id id = 0; id < 8; ++id)
+        scene.points.insert(id, made<Point>(random, kind, beginning(kind)), beginning(kind));
       for (Id id = 0; id < 3; ++id) {
         scene.region_set.insert(2 * id, made<TestType>(random, kind, beginning(kind)), beginning(kind));
       }

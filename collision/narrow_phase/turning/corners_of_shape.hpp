@@ -1,4 +1,4 @@
-// The corners of a shape, of which some are looked for: those of a solid one by one, those of a mesh down its tree.
+// The corners of a shape for searches of some of them: of a solid one by one, of a mesh down its tree.
 #pragma once
 
 #include "collision/narrow_phase/convex_core.hpp"
@@ -44,15 +44,15 @@ class CornersOfSolid {
   double radius() const { return radius_; }      ///< no corner is farther from the origin of the body
   double grown_by() const { return grown_by_; }  ///< the radius of the balls about the corners, which a capsule has
 
-  /// Calls take(corner) for each corner but for those in boxes of which rank(box) is not below limit() when it is their
-  /// turn; the boxes of lower rank first.
+  /// Calls take(corner) for each corner, boxes of lower rank first, except for corners in boxes whose rank(box) is not
+  /// below limit() when their turn comes.
   template <class Rank, class Limit, class Take>
   void search(const Rank&, const Limit&, const Take& take) const {
     for (std::uint32_t i = 0; i < points_.size(); ++i) take(i);
   }
 
-  /// The farthest along a direction that a corner comes while the body turns about an axis, both of unit length and as
-  /// the body has them at one time: points keep their heights and distances about the axis.
+  /// How far along a direction a corner comes at most while the body turns about an axis, both of unit length and in
+  /// the coordinates of the body at one time: points keep their heights and distances about the axis.
   double revolving_reach(const Eigen::Vector3d& along, const Eigen::Vector3d& axis) const {
     const double cosine = dot(along, axis);
     const double sine = norm(cross(along, axis));
@@ -104,7 +104,7 @@ class CornersOfMesh {
     }
   }
 
-  /// Of the whole ball.
+  /// That of the ball around the mesh.
   double revolving_reach(const Eigen::Vector3d&, const Eigen::Vector3d&) const { return radius_; }
 
  private:

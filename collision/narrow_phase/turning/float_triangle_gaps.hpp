@@ -6,12 +6,12 @@
 
 namespace kds::collision::detail {
 
-/// Of as many pairs of triangles as there are lanes, along which of the 11 directions that can separate them they are
-/// the farthest apart at the time of a view, and for how long along that one, which turns with what it belongs to: the
-/// product of two edges, of one triangle or of both.
+/// For as many pairs of triangles as there are lanes: along which of the 11 directions that can separate them they are
+/// farthest apart at the time of a view, and for how long they are apart along that direction. It is the product of two
+/// edges, of one triangle or of both, and turns with them.
 ///
 /// Units and margin are those of the view (NodesView): a corner is as good as the centre of a node, and a gap has no
-/// half edges besides. Edges need not be right: any vectors P and Q of at most unit length that turn with the bodies
+/// half edges besides. Edges need not be exact: any vectors P and Q of at most unit length that turn with the bodies
 /// make a direction P x Q, along which the corners tell a gap.
 template <class Floats>
 class TriangleGaps {
@@ -63,13 +63,13 @@ class TriangleGaps {
   struct Direction {
     Vectors value, rate, bend;
   };
-  /// Of three corners, but for the way.
+  /// The heights of three corners, without the way between the bodies.
   struct Heights {
     Floats value[3], rate[3], bend[3];
   };
   [[gnu::always_inline]] static Floats least(const Floats (&x)[3]) { return lesser(lesser(x[0], x[1]), x[2]); }
   [[gnu::always_inline]] static Floats most(const Floats (&x)[3]) { return greater(greater(x[0], x[1]), x[2]); }
-  /// After a time, but for what is bent.
+  /// The least of them after a time, without second derivatives.
   [[gnu::always_inline]] static Floats least_at(const Heights& of, Floats s) {
     return least({of.value[0] + s * of.rate[0], of.value[1] + s * of.rate[1], of.value[2] + s * of.rate[2]});
   }

@@ -1,9 +1,9 @@
-// Two bodies that turn, seen at one time in floats: what gaps of their parts are made of.
+// Two bodies that turn, seen at one time in floats: the numbers of which gaps of their parts are computed.
 #pragma once
 
 namespace kds::collision {
 
-/// In the axes of one of them (a), in units in which all is of order 1: see NodesView, which makes it.
+/// All vectors are in the axes of one body (a), in units in which they are of order 1: see NodesView, which makes it.
 struct FloatView {
   float columns[3][3];                         ///< where the axes of b point
   float way_now[3], way_rate[3], way_bend[3];  ///< from the origin of a to that of b

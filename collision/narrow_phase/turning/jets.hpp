@@ -1,5 +1,5 @@
-// Numbers and vectors that turn, with their first two derivatives at one time, and how long what they add up to stays
-// positive for certain.
+// Numbers and vectors that turn, with their first two derivatives at one time, and how long a number surely stays
+// positive.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -63,12 +63,13 @@ inline double power_below_cube_root(double x) {
   return std::ldexp(1.0, exponent >= 0 ? exponent / 3 : -((2 - exponent) / 3));
 }
 
-/// A time s in [0, longest], rounded down, such that value + rate x + bend x^2 / 2 - third x^3 / 6 > 0 for all x in
-/// [0, s]. Near the first root, unless bend is positive, which is not made use of. `third` >= 0.
+/// A time s in [0, longest], rounded down, such that value + rate x + bend x^2 / 2 - third x^3 / 6 > 0 for all x in [0,
+/// s]. It is near the first root unless bend is positive: a positive bend counts as 0. `third` >= 0.
 ///
-/// Method: without a positive bend the function is concave. Where it is positive at the far end, too, it is so all the
-/// way. Else no term takes more than a third of the value until some time, and together they take all of it before 4
-/// times as late; from there chords meet zero before the function does, and tangents after.
+/// Method: without a positive bend the function is concave. Where it is positive at the far end too, it is positive all
+/// the way. Otherwise there is a time until which no term takes more than a third of the value, and by four times that
+/// time they have taken all of it together. In between chords meet zero before the function does, and tangents after
+/// it.
 inline double positive_for(const Jet& f, double third, double longest) {
   if (!(f.value > 0)) return 0;
   const double c2 = std::min(f.bend, 0.0) / 2;
@@ -93,8 +94,8 @@ inline double positive_for(const Jet& f, double third, double longest) {
   return low * (1 - 0x1p-30);
 }
 
-/// The same of a function that is known not to be negative at first, whatever doubles make of its value: for all x in
-/// (0, s]. `rate_error`, `bend_error`: how much less its rate and bend may be.
+/// The same for a function that is known not to be negative at first, whatever its value in doubles: for all x in (0,
+/// s]. `rate_error`, `bend_error`: how much less its rate and bend may be.
 ///
 /// Method: it is at least x (rate + bend x / 2 - third x^2 / 6).
 inline double positive_after(const Jet& f, double rate_error, double bend_error, double third, double longest) {

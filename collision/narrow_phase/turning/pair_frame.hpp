@@ -64,8 +64,8 @@ class PairFrame {
   Eigen::Vector3d axis_a(int i) const { return matrix_a.col(i); }
   Eigen::Vector3d axis_b(int i) const { return matrix_b.col(i); }
 
-  /// How far to look ahead, s: no more than a radian of both turns together, nor than the time in which the bodies, of
-  /// the sizes given, come to be elsewhere.
+  /// How far to look ahead, s: no more than a radian of both turns together, nor than the time in which the way between
+  /// the bodies changes by twice its length plus their sizes.
   double stretch(double sizes, double limit) const {
     const double rates = rate_a + rate_b;
     const double far = 2 * (norm(way.value) + sizes);
@@ -130,7 +130,7 @@ struct TurningBounds {
                     rate_n * (rate_n * frame.way_error + 2 * frame.rate_error);
   }
 
-  /// The first, but for roundings. `way`: bounds on its length, and those of its derivatives.
+  /// `third` without roundings. `way`: bounds on its length, and those of its derivatives.
   static double third_of(double rate_n, double rate_a, double rate_b, const Jet& way, double of_a, double of_b) {
     const double p = way.value + of_a + of_b;
     const double p1 = way.rate + rate_a * of_a + rate_b * of_b;
@@ -140,15 +140,15 @@ struct TurningBounds {
   }
 };
 
-/// The time that is so much later, rounded down, or t itself if that is not worth while, not even this part of the
-/// stretch: then exact signs get on faster.
+/// The time t + wait, rounded down; t itself if the wait is less than the part `worth` of the stretch: then exact signs
+/// are faster.
 inline double after_wait(double t, double wait, double stretch, double worth = 0x1p-16) {
   return wait > worth * stretch ? std::max(t, next_down(t + wait)) : t;
 }
 
-/// How long two bodies of revolution are apart along a direction that stays as it is: each body about its own axis of
-/// turning, so that what it covers along the direction never changes. However fast they turn it costs nothing.
-/// `covered`: by both together. n is at most a rounding longer than 1.
+/// How long the bodies of revolution around two bodies are apart along a constant direction: each is about its body's
+/// axis of turning, so its extent along the direction never changes. The cost does not depend on how fast the bodies
+/// turn. `covered`: by both together. n is at most a rounding longer than 1.
 template <int Degree>
 double revolving_apart_for(const PairFrame<Degree>& frame, const Eigen::Vector3d& n, double covered) {
   constexpr double rounding = PairFrame<Degree>::rounding;

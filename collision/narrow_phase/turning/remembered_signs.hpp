@@ -14,13 +14,14 @@
 
 namespace kds::collision {
 
-/// Remembers what was asked. Where two edges of meshes meet the two triangles on either side of each do, too, and with
-/// a vertex all that are around it: of all these pairs one certificate says when. It is asked more than once of each,
-/// too: whether they penetrate, when they part, where they touch.
+/// Remembers the signs of certificates that were asked for. Where two edges of meshes meet, so do the triangles on both
+/// sides of each, and where a vertex meets a triangle, so do all triangles around it: one certificate tells the time
+/// for all these pairs. And each pair asks for it several times: whether the two penetrate, when they part, where they
+/// touch.
 ///
-/// Law: answers are those of kds::sign_after, failure_time and recovery_time. These say of all doubles from one to
-/// another which sign a certificate has just after them. All certificates are of the same two motions, which stay where
-/// they are.
+/// Law: answers are those of kds::sign_after, failure_time and recovery_time. These tell for all doubles of a stretch
+/// which sign a certificate has just after them. All certificates are of the same two motions, which must stay at their
+/// addresses.
 class RememberedSigns {
  public:
   template <class C>

@@ -72,8 +72,8 @@ class TrianglesSeen {
   ThreeVectors a_, b_, u_, v_;
 };
 
-/// Along which of these directions they are the farthest apart, and for how long along that one, as it turns with what
-/// it belongs to.
+/// Along which of these directions they are farthest apart, and for how long they are apart along it, as it turns with
+/// the edges or the face that it belongs to.
 template <int Degree>
 class TriangleGap : private TrianglesSeen<Degree> {
  public:

@@ -82,7 +82,8 @@ class TurningAboveHalfSpace {
     if (!frame.certain) return {};
     return {&frame, error(frame) + (stretch > 0 ? fastest(frame, stretch) * stretch : 0)};
   }
-  /// Nor need what cannot come to be the lowest: two corners turn about each other no faster than the body.
+  /// Nor need corners be looked at that cannot come to be the lowest: two corners turn about each other no faster than
+  /// the body.
   Conditions unsure_while_open(const Frame& frame, int, double stretch) const {
     if (!frame.certain) return {};
     const double past_each_other = frame.rate_b > 0 ? 2 * corners_.radius() * frame.rate_b * stretch : 0;
@@ -141,7 +142,7 @@ class TurningAboveHalfSpace {
     return pair;
   }
 
-  /// In how much time it changes which corners are low. So of many there are few that can be.
+  /// The time in which other corners come to be low. So few of many corners can be the lowest until then.
   double time_of_turning() const {
     const double rate = norm(b_.angular_velocity);
     return rate > 0 ? (Corners::many ? 0x1p-6 : 0.5) / rate : never;
@@ -172,9 +173,9 @@ class TurningAboveHalfSpace {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-/// The body of revolution about the axis of turning reaches as far down at all times. Nearer to the plane each corner
-/// is followed along its Taylor series. Of a box of corners these are that of its centre, less how far it reaches below
-/// that while it turns, or in any orientation.
+/// While the body is far from the plane, its body of revolution about the axis of turning decides, whose lowest height
+/// is constant. Nearer to the plane each corner is followed along its Taylor series. For a box of corners the series is
+/// that of its centre, less the extent of the box below the centre while it turns, or in any orientation.
 template <int Degree, class Corners>
 double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, double horizon) const {
   const double t = frame.time;

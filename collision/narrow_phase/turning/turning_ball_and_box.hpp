@@ -91,7 +91,7 @@ class TurningBallAndBox {
                           half_[2] * std::abs(direction[2]);
     const VectorJet n = turning(frame.turn_a(direction), frame.spin_a);
     const double stretch = frame.stretch(radius_of_box_ + radius_, (horizon - t) * (1 + 0x1p-40));
-    // The ball's own spin is nothing to it.
+    // The spin of the ball does not matter: a ball that turns covers the same place.
     const TurningBounds bounds(frame, frame.rate_a, 0, 0, stretch);
     Jet f = dot(n, frame.way);
     f.value -= offset * (1 + PairFrame<Degree>::rounding) + bounds.rounding;

@@ -1,4 +1,5 @@
-// A ball and a convex polytope or a segment that turns: which part of that the ball is away from, and for how long.
+// A ball and a convex polytope or a segment that turns: from which part of the polytope the ball is apart, and for how
+// long.
 #pragma once
 
 #include "certificates/turning/ball_triangle_separation.hpp"
@@ -19,12 +20,11 @@
 
 namespace kds::collision {
 
-/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius, or of a core
-/// that is grown by a radius of its own than the sum of the two: to the plane
-/// of a face, or to the line of an edge where the centre is on the far side of it from both faces, or to a corner from
-/// which all edges lead away. Where one of these *ways* holds, the half space, the wedge or the cone that holds the
-/// core is no nearer; and whichever part of it is the nearest, its way holds if they are apart. (Compare
-/// TurningTriangleAndBall.)
+/// A convex core (a) and a ball (b) are apart while the centre is no nearer to the core than the radius (the sum of the
+/// radii, if the core has one too). The distance is that to the plane of a face, or to the line of an edge where the
+/// centre is on the far side of it from both faces, or to a corner from which all edges lead away. Where one of these
+/// *ways* holds, the half space, the wedge or the cone that holds the core is no nearer; and whichever part of it is
+/// the nearest, its way holds if they are apart. (Compare TurningTriangleAndBall.)
 template <int Degree>
 class TurningBallAndPolytope {
  public:
@@ -205,7 +205,7 @@ double TurningBallAndPolytope<Degree>::apart_until(double t, double horizon) con
   const Eigen::Vector3d n = normalized(apart);
   const double all = (horizon - t) * (1 + 0x1p-40);
   const double stretch = frame.stretch(polytope_.radius + radius(), all);
-  // The direction from the nearest point, with which it turns; the ball's own spin is nothing to it.
+  // The direction from the nearest point, with which it turns; the spin of the ball does not matter.
   const TurningBounds bounds(frame, frame.rate_a, polytope_.radius, 0, stretch);
   Jet f = dot(turning(n, frame.spin_a), frame.way);
   f.value -= dot(n, frame.a.farthest(n)) + radius() + PairFrame<Degree>::rounding * radius() + bounds.rounding;

@@ -36,8 +36,8 @@ class TurningBoxes {
   TurningBoxes(const RigidMotion& a, const AlignedBox& of_a, const RigidMotion& b, const AlignedBox& of_b)
       : a_(a), b_(b), box_a_(of_a), box_b_(of_b), turned_alike_(turned_alike(a, b)) {}
 
-  /// Whether a way certainly separates nothing, told for next to nothing: of boxes that are turned alike at all times,
-  /// as those of a lattice are, edges of one direction are parallel.
+  /// Whether a way certainly separates nothing, at hardly any cost: boxes that are turned alike at all times, as in a
+  /// lattice, have parallel edges.
   bool known_to_separate_nothing(int way) const { return turned_alike_ && way >= 12 && (way - 12) / 2 % 4 == 0; }
 
   /// Numbers of conditions of a way, as bits.
@@ -66,12 +66,12 @@ class TurningBoxes {
   /// The pair as it is at t, in doubles.
   PairFrame<Degree> frame(double t) const { return {a_, b_, t}; }
 
-  /// How wide the gap is along each way, in doubles; not to be told from zero within the bound that is returned. Of
-  /// ways that cross edges it is that times the sine of their angle.
+  /// How wide the gap is along each way, in doubles; returns a bound on the errors. For ways that cross edges it is the
+  /// gap times the sine of their angle.
   double gaps(const PairFrame<Degree>& frame, std::array<double, ways>& gap) const;
 
-  /// The conditions of a way that do not hold for certain, and are positive, for so long from now on. (Most do: they
-  /// are of the vertices and edges on the far side.)
+  /// The conditions of a way that are not known to stay positive for the stretch from now on. (Most do: they are of the
+  /// vertices and edges on the far side.)
   Conditions unsure(const PairFrame<Degree>& frame, int way, double stretch) const {
     if (!frame.certain || !(stretch <= frame.stretch(box_a_.radius + box_b_.radius, stretch))) return all(way);
     Conditions unsure = 0;
@@ -271,7 +271,7 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
   return best;
 }
 
-/// Of ways that cross edges the gap is that times the sine of their angle: where they are nearly parallel it says
+/// For ways that cross edges the gap is multiplied by the sine of their angle: where they are nearly parallel it tells
 /// nothing.
 template <int Degree>
 double TurningBoxes<Degree>::depth(double t) const {

@@ -255,7 +255,8 @@ ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, doubl
     const double first = ways.first_penetration(t0, horizon, estimate);
     if (first == never || mode == ContactMode::transparent) return {first, true};
     if (first == t0) {
-      // Whether what they overlap by counts is as seen from when these motions began, whenever it is asked.
+      // Whether an overlap at t0 counts as a contact is decided by following both from the beginning of these motions,
+      // so that the answer does not depend on when it is asked for.
       const double begun = std::max(a.motion.start(), b.motion.start());
       if (begun < t0 && ways.penetrate(next_down(t0))) {
         const double met = ways.first_penetration(begun, t0);

@@ -18,21 +18,21 @@ namespace kds::collision {
 // does not count; orientations are those of motions.
 //
 // Mode `resolved`, bodies that overlap by rounding: they are in contact if they approach at some point that they share,
-// faster than roundings can feign. Where they do not they are looked at again when they have parted and meet, or are
-// deeper in each other, by more than roundings.
+// faster than by roundings. If they do not, they are looked at again when they have parted and meet, or when their
+// overlap has grown by more than roundings.
 
 /// In what time two bodies turn by some radians, s: how far exact tests look at a time. Finite.
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b);
 
-/// Whether it counts how two bodies turn: not among balls, which look the same however they do, and half-spaces, which
-/// do not turn.
+/// Whether the turning of two bodies matters: not for two balls, or a ball and a half-space, since a ball covers the
+/// same place in all orientations and a half-space does not turn.
 inline bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
   const auto counts = [](const Shape& shape) { return !std::holds_alternative<Sphere>(shape) && !unbounded(shape); };
   return counts(a.shape) || counts(b.shape);
 }
 
-/// Of two bodies of which both can turn, or of a half-space (a) and one that can.
+/// The tests of two bodies that can both turn, or of a half-space (a) and a body that can turn.
 template <int Degree>
 struct TurningContact {
   using Motion = certificates::RigidMotion<Degree>;
@@ -48,8 +48,8 @@ struct TurningContact {
   static bool in_contact(const Body& a, const Body& b, double t);
   static double first_separation(const Body& a, const Body& b, double t0, double horizon);
 
-  /// Point, normal and features as of the shapes as they are placed at t. Of the points that the two share the middle,
-  /// or where that does not approach but another does, the corner of what they share that approaches fastest.
+  /// Point, normal and features of the shapes in their places at t. The point is the middle of the points that the two
+  /// share or, where that does not approach but another one does, the corner of that set that approaches fastest.
   static Contact contact_at(const Body& a, const Body& b, double t, const FoundTouch&);
 };
 

@@ -21,8 +21,8 @@ namespace kds::collision {
 /// products of an edge of a and an edge of b. Direction k, taken so that it points from b to a, is the way 2 k, and
 /// from a to b the way 2 k + 1. What is exact of these ways is in TurningTriangles and TurningTriangleAndBox.
 ///
-/// `slack`: how much deeper than nothing they may be in each other and still count as apart. With a slack, what is said
-/// is right to some roundings alone.
+/// `slack`: how deep they may be in each other and still count as apart. With a slack the answers are right only up to
+/// some roundings.
 template <int Degree, class HullB>
 class TurningHulls {
  public:
@@ -58,17 +58,18 @@ class TurningHulls {
   double gap(double t) const { return gap(TurningView<Degree>(a_, b_, t)); }
   double gap(const TurningView<Degree>& view) const { return widest(Seen(*this, view)).gap; }
 
-  /// No gap is known better than this.
+  /// A bound on the error of a gap.
   double error(const PairFrame<Degree>& frame) const {
     if (!frame.certain) return never;
     const double lengths = norm(frame.way.value) + hull_a_.radius + hull_b_.radius;
     return frame.way_error + (PairFrame<Degree>::rounding + hull_a_.doubt + hull_b_.doubt) * lengths;
   }
 
-  /// The same, but for roundings, where something gets it for less.
+  /// The gap up to roundings. Other pairs have a cheaper way to it.
   double quick_gap(const TurningView<Degree>& view) const { return gap(view); }
 
-  /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
+  /// An overlap up to this depth may come from roundings alone: four times the error of a gap. It does not count where
+  /// the two do not approach.
   double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }
 
   /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
@@ -158,7 +159,7 @@ class TurningHulls {
       visit(Widest{2 * k + 1, gaps[1], n});
     }
   }
-  /// Along which they are the farthest apart.
+  /// The way along which they are farthest apart.
   Widest widest(const Seen& seen) const {
     Widest best;
     every_gap(seen, [&](const Widest& way) {

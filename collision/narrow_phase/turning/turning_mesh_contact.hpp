@@ -23,9 +23,9 @@ namespace kds::collision {
 /// floats, some at a time (TriangleGaps), by doubles (TurningHulls), and only where that does not help on, by exact
 /// signs (WaysApart). So the time that is found does not depend on what floats and doubles prove.
 ///
-/// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than roundings
-/// can feign. Else it is passed over until it has parted and meets again, or is deeper in each other by more than
-/// roundings: that is told by doubles, too.
+/// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than by
+/// roundings. Otherwise it is passed over until it has parted and meets again, or until its overlap has grown by more
+/// than roundings, which is decided in doubles.
 template <int Degree>
 struct TurningMeshContact {
   using Motion = certificates::RigidMotion<Degree>;

@@ -194,8 +194,8 @@ double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon,
   return Front(*this, t0, horizon, mode).next();
 }
 
-/// A view costs as much as some pairs of nodes, so that one is looked through for a part of the time that the last one
-/// was good for.
+/// A view costs as much as some pairs of nodes, so each is used for a part of the time for which the last one could be
+/// used.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::Front::next() {
   constexpr double part = 0.375;
@@ -302,8 +302,8 @@ void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit)
   }
 }
 
-/// By exact signs: for a while, or to where other pairs may come first. What slides on each other has nothing else: the
-/// while grows from try to try.
+/// By exact signs: for a while, or up to the time at which other pairs may come first. For surfaces that slide on each
+/// other nothing else decides, so the while grows from try to try.
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int tries) {
   constexpr double part_of_turn = 0x1p-6;

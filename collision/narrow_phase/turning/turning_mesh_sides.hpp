@@ -64,7 +64,7 @@ class MeshOfPair {
   double unit_;
 };
 
-/// What is one leaf.
+/// A shape that is a single leaf.
 class SolidSide {
  public:
   bool is_leaf(std::uint32_t) const { return true; }

@@ -19,7 +19,7 @@ namespace kds::collision {
 struct NodeUnits {
   double unit;   ///< their length in the world
   double round;  ///< by which they are grown on all sides
-  double reach;  ///< how far they reach from the origin of the body
+  double reach;  ///< distance of the farthest of them from the origin of the body
 };
 
 /// The box of these half extents as a node. Its unit is half its diagonal.

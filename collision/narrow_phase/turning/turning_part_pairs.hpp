@@ -37,8 +37,8 @@ struct BallOfPart {
 ///
 /// Before the balls around the bodies meet no parts do. From then on the balls around two parts are followed along the
 /// direction between their centres, which stays as it is: the way between the bodies is a polynomial, a centre is
-/// accelerated by no more than its distance from the origin times the square of the rate; and, for what turns fast, it
-/// does not leave its circle.
+/// accelerated by no more than its distance from the origin times the square of the rate; and, where a body turns fast,
+/// a centre does not leave its circle.
 ///
 /// Cost: a root, and for each pair of parts some fifty operations.
 template <int Degree>

@@ -82,7 +82,8 @@ class TurningTriangleAndBall {
     return 4 * frame.way_error + (PairFrame<Degree>::rounding + hull_.doubt) * lengths;
   }
 
-  /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
+  /// An overlap up to this depth may come from roundings alone: four times the error of a gap. It does not count where
+  /// the two do not approach.
   double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }
 
   double apart_until(double t, double horizon) const { return apart_until(TurningView<Degree>(a_, b_, t), horizon); }

@@ -44,7 +44,8 @@ class TurningTriangleAndCapsule : public TurningRoundedPolytopes<Degree> {
   double gap(const TurningView<Degree>& view) const { return gap(view.time); }
   double quick_gap(const TurningView<Degree>& view) const { return gap(view); }
   double error(const PairFrame<Degree>& frame) const { return Base::error(frame); }
-  /// How deep they are in each other counts as nothing, where they do not approach: some times what is known.
+  /// An overlap up to this depth may come from roundings alone: four times the error of a gap. It does not count where
+  /// the two do not approach.
   double roundings(const PairFrame<Degree>& frame) const { return 4 * error(frame); }
 
   static int shallow_plane(double, double) { return -1; }

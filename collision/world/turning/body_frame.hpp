@@ -1,4 +1,4 @@
-// Of bodies that may rest on each other: where they are, and whether they move.
+// Where bodies that may rest on each other are, and whether they move.
 #pragma once
 
 #include "certificates/turning/turned_orientation.hpp"

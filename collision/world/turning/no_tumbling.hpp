@@ -1,4 +1,4 @@
-// Bodies that precess, in worlds of bodies that keep their orientation: there are none.
+// Stands for the part Tumbling in worlds of bodies that keep their orientation, in which none precesses.
 #pragma once
 
 #include "collision/body_motion.hpp"
@@ -12,7 +12,7 @@ namespace kds::collision {
 template <class Motion>
 class Tumbling;
 
-/// Answers as the part of a world in which nothing turns.
+/// Answers as Tumbling does without bodies.
 template <class Motion>
 requires(!turns<Motion>) class Tumbling<Motion> {
  public:

@@ -11,12 +11,13 @@ namespace kds::collision::turning_rest {
 inline constexpr double largest_reach = 0x1p-6;
 
 /// A body is calm while its fastest point has at most this many times the speed squared that a fall by that way gives:
-/// with 4 it is twice acceleration times shortest flight (2 cm/s on Earth). Less, and the flights of a body that rocks
-/// on its corners are faster than that; more, and bodies that slide or roll on a level floor stop the sooner.
+/// with 4 it is twice acceleration times shortest flight (2 cm/s on Earth). If it is less, a body that rocks on its
+/// corners is never calm, since its flights are faster; if it is more, bodies that slide or roll on a level floor stop
+/// sooner.
 inline constexpr double calm_energy = 4;
 
-/// What touches many is driven by the flights of all: a body that touches n others is calm up to that speed times n
-/// over the first number, at least once and at most the second times it (8 cm/s on Earth).
+/// A body that touches many others is driven by the flights of all: one that touches n others is calm up to that speed
+/// times n / calm_neighbours, where that factor is at least 1 and at most most_driven (8 cm/s on Earth).
 inline constexpr double calm_neighbours = 2;
 inline constexpr double most_driven = 4;
 
@@ -24,11 +25,10 @@ inline constexpr double most_driven = 4;
 /// only where that is slower than this part of the speed of a calm body (20 um/s on Earth); else they slide on.
 inline constexpr double smooth_slip = 0x1p-10;
 
-/// In shortest flights: for how long bodies are to be calm, so that they touch wherever they can, and how long it takes
-/// until those that were not in balance are looked at again.
+/// In shortest flights: for how long bodies have to be calm, so that by then they have touched wherever they can; and
+/// how long it takes until bodies that were not in balance are looked at again.
 inline constexpr double calm_flights = 8;
-/// In shortest flights: for how long bodies are to be calm until they come to rest without those that they touch and
-/// that move.
+/// In shortest flights: after being calm for so long bodies come to rest even if others that they touch still move.
 inline constexpr double part_flights = 64;
 /// Of a group that is not in balance those bodies are left out first of which at least this part of the worst imbalance
 /// is left.
@@ -36,7 +36,7 @@ inline constexpr double unheld_part = 0.5;
 /// What rests wakes where more than this part of the greatest acceleration is left of it because of what lies on it.
 inline constexpr double weak_part = 0x1p-6;
 /// In shortest flights: impulses that each are too small to move a body at rest are summed up for so long. So an
-/// acceleration that would be less than twice that of the weight over this number is taken no notice of.
+/// acceleration below twice that of the weight, divided by this number, has no effect.
 inline constexpr double ignored_flights = 256;
 /// In shortest flights: for how long it is remembered where bodies touched.
 inline constexpr double memory = 64;
@@ -45,7 +45,7 @@ inline constexpr double memory = 64;
 /// their normals have a greater cosine than that of the angle between them.
 inline constexpr double same_place = 0x1p-5;
 inline constexpr double same_side = 0.9;
-/// Of a pair; more than that, and the oldest is forgotten.
+/// How many places of a pair are remembered. When there is one more, the oldest is forgotten.
 inline constexpr std::size_t most_places = 16;
 
 }  // namespace kds::collision::turning_rest

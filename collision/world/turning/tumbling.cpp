@@ -178,8 +178,8 @@ RotationPiece Tumbling<Motion>::way_back(BodySlot slot, const Quaterniond& as_it
   return rotation_piece(body.inertia, body.state, t, free, of_axes(body.inertia, as_it_moves), error_ / 4);
 }
 
-/// One that does not lead back at all is off by a h^2 / 2 more at its end, four times the bulge: half as long, by a
-/// quarter of the option.
+/// A piece that does not lead back at all is off by a h^2 / 2 more at its end, four times the bulge; a piece half as
+/// long by a quarter of the option.
 template <class Motion>
 void Tumbling<Motion>::follow(BodySlot slot, const RotationPiece& piece, bool whole, double t) {
   begin(slot, piece);

@@ -27,8 +27,9 @@ namespace detail {
 template <class Motion>
 struct Tumbler {
   PrincipalInertia inertia;
-  /// Its free rotation: the angular momentum, and the orientation at the last contact or, of bodies that are no tops,
-  /// where the present piece begins. That is not the orientation of the motion, which is off by up to the option.
+  /// Its free rotation: the angular momentum, and the orientation at the last contact or, for bodies that are not
+  /// symmetric tops, where the present piece begins. The orientation of the motion differs from it by up to
+  /// WorldOptions::orientation_error.
   RotationState state{};
   PathOf<Motion> path{};  ///< as it was given or came out of an impulse: pieces restart it, but do not add up roundings
   double ends = never;    ///< when the present piece does
@@ -79,7 +80,7 @@ class Tumbling {
   Tumbling(Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
       : bodies_(bodies), error_(options.orientation_error), counters_(counters) {}
 
-  /// A body comes that will precess.
+  /// Adds a body that will precess.
   void add(BodySlot slot, const PrincipalInertia& inertia);
   void remove(BodySlot slot);
   bool has(BodySlot slot) const { return slot < of_.size() && of_[slot]; }
@@ -126,7 +127,8 @@ class Tumbling {
 
   /// The piece that leads from this orientation back to the free rotation, at the time of meet() or of take_next().
   RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t) const;
-  /// The body takes up that piece, or if it cannot turn back as fast a part of that turn, for half the time.
+  /// The body moves by that piece from now on; or, if it cannot turn back that fast, makes a part of that turn, in half
+  /// the time.
   void follow(BodySlot slot, const RotationPiece& piece, bool whole, double t);
 
   /// Its free rotation at t.
@@ -135,7 +137,8 @@ class Tumbling {
   /// Throws AuditFailure if a motion is off its free rotation by more than it may be, or a piece is over.
   void audit(double t) const;
 
-  /// How far a body has come, for a world that has the same body; nothing of one that does not precess.
+  /// The state of a body, from which another world that has the same body goes on; empty for a body that does not
+  /// precess.
   class Progress {
    public:
     Progress() = default;
@@ -166,10 +169,10 @@ class Tumbling {
     std::shared_ptr<const Body> body_;
   };
   Progress progress(BodySlot slot) const { return has(slot) ? Progress(*of_[slot]) : Progress(); }
-  /// A body of another world comes, and precesses as it does there.
+  /// Adds a body of another world, which goes on from its state there.
   void take_in(BodySlot slot, const Tumbling& from, BodySlot of);
-  /// A body has come so far in another world. For different bodies it may be called by several threads at once. Before
-  /// the next piece is asked for, go_on().
+  /// A body continues from its state in another world. May be called for different bodies by several threads at once.
+  /// go_on() has to follow before the next piece is asked for.
   void go_on_from(BodySlot slot, const Progress& progress);
   void go_on();
 

@@ -26,7 +26,7 @@ void give_impulse(RigidVelocity& body, const Mobility& mobility, const Vector3d&
 
 }  // namespace
 
-/// At the point of contact. Roundings count as nothing.
+/// The rate at which b parts from a at the point of contact; 0 where it is no larger than roundings.
 template <class Motion>
 double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
   const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
@@ -34,16 +34,17 @@ double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) c
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
 }
 
-/// What is pressed together flies for a while, and what would stick parts, if ever so slowly: else the two would meet
-/// without end.
+/// The speed with which two bodies part that have approached each other. Bodies that are pressed together part fast
+/// enough for a flight of WorldOptions::shortest_flight. Bodies that would stick part with a small share of the speed
+/// of approach. Otherwise the two would meet endlessly at one instant.
 template <class Motion>
 double Engine<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
   constexpr double least = 0x1p-26;  // of the speed of approach
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
 
-/// What an impulse makes of two bodies that meet; nothing where they do not approach, unless one of them bends: what is
-/// within the tolerance of that begins a new piece, and leaves it.
+/// The motions of two bodies that meet after their impulse. They do not change where the two do not approach, unless
+/// one of them bends: then the other, which is within the tolerance, begins a new piece that leaves it.
 template <class Motion>
 TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Contact& contact,
                                              std::uint64_t burst) requires(turns<Motion>) {
@@ -71,11 +72,13 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
     normal_turns = cross(motion_b.angular_velocity, n);
   }
   double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
-  // And what falls together will be pressed together when one of them lies on something.
+  // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
+  // each of them would press if the other were at rest counts too.
   for (const Motion* motion : {&motion_a, &motion_b}) {
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
-  // Losses may make infinitely many contacts of three bodies in a line: so too many at one time lose nothing any more.
+  // With losses of energy three bodies in a line can make infinitely many contacts. So after too many contacts at one
+  // instant nothing is lost any more.
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
@@ -90,7 +93,7 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   Surfaces surfaces{
       .friction = often ? 0 : std::min(bodies_[a].friction, bodies_[b].friction),
       .tangential_restitution = std::min(bodies_[a].tangential_restitution, bodies_[b].tangential_restitution)};
-  // A ball is turned by nothing that acts along its normal.
+  // An impulse along its normal does not turn a ball.
   const auto arm = [&](BodySlot slot, const Motion& motion) {
     return surfaces.smooth() && ball(slot) ? Vector3d(Vector3d::Zero())
                                            : Vector3d(contact.point - motion.path.coefficients[0]);
@@ -178,9 +181,9 @@ Motion Engine<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
   return motion;
 }
 
-/// Two bodies move like this just after a contact: those that precess get the pieces that lead back to their free
-/// rotations. As the additional turn may close the gap again, only such a part of it is used that the two bodies part
-/// with half of their speed at least.
+/// motion_a and motion_b are the motions just after a contact: bodies that precess get the pieces that lead back to
+/// their free rotations. As the additional rotation may close the gap again, only so much of it is used that the two
+/// bodies part with at least half of their speed.
 template <class Motion>
 void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                                const Contact& contact) requires(turns<Motion>) {
@@ -200,7 +203,8 @@ void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion&
   look(a, back_a, piece_a), look(b, back_b, piece_b);
   const double free = parting(motion_a, motion_b);
   const double led = parting(back_a, back_b);
-  // Ways back that differ for two neighbours of a body would lead it to and fro: after many contacts at once, none.
+  // If two neighbours led a body back in different ways it could go to and fro endlessly. So after many contacts at one
+  // instant nothing is led back.
   const auto often = [&](BodySlot slot) {
     return bodies_.fixed(slot) || bodies_[slot].meetings > options_.zeno.contacts;
   };
@@ -229,7 +233,7 @@ FreeTurning Engine<Motion>::free_turning(BodyId id) const requires(turns<Motion>
           motion.angular_velocity / bodies_[slot].inverse_inertia};
 }
 
-/// Walls meet bounding balls, so that they turn nothing.
+/// Walls meet bounding balls, so they do not turn a body.
 template <class Motion>
 void Engine<Motion>::process_wall() requires(turns<Motion>) {
   const BodySlot slot = walls_.next_body();

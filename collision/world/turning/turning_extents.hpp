@@ -1,4 +1,4 @@
-// How far a body that turns reaches about its centre.
+// The extents of a body that turns about its centre.
 #pragma once
 
 #include "certificates/turning/rigid_motion.hpp"
@@ -21,8 +21,9 @@ namespace kds::collision {
 /// count for several pieces are larger than those of one by this part of its radius.
 inline constexpr double path_rounding = 0x1p-24;
 
-/// Calls take(x) for points of which the convex hull holds the shape: those of a hull, the corners of the oriented box
-/// around a mesh, in its axes rounded to floats, which are off by 2^-20 of its size. False if there are none.
+/// Calls take(x) for points whose convex hull holds the shape: the corners of a hull; of a mesh the corners of the
+/// oriented box around it, with axes rounded to floats, so that they are off by 2^-20 of its size. False for other
+/// shapes.
 template <class Take>
 bool take_corners(const PlacedShape& shape, const Take& take) {
   if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
@@ -51,19 +52,19 @@ bool take_corners(const PlacedShape& shape, const Take& take) {
                      [&](const PlacedShape& part) { return take_corners(part, take); });
 }
 
-/// Whether the volume of such a body is the body of revolution of points around a hull or a mesh.
+/// Whether the volume of a body with this shape is the body of revolution of points around a hull or a mesh.
 inline bool takes_corners(const Shape& shape) { return std::holds_alternative<ConvexHull>(shape) || has_mesh(shape); }
 
 /// The half extents of a box along the axes of the world that holds a body however far it turns, rounded outward.
 ///
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
 /// axis of the world it is never farther from the centre than |c n_d| + rho sqrt(1 - n_d^2): these are the bounds of
-/// the body of revolution, which are never beyond those of the bounding ball. A body that does not turn reaches as far
-/// as it does as it is. A capsule is a box without width, grown by its radius; a mesh is the oriented box around it; a
-/// compound is all that its parts are. Of other shapes it is the box around the bounding ball.
+/// the body of revolution, which are never beyond those of the bounding ball. For a body that does not turn these are
+/// its own extents. A capsule is treated as a box without width, grown by its radius; a mesh as the oriented box around
+/// it; a compound as all of its parts. For other shapes it is the box around the bounding ball.
 ///
-/// Error bound: an axis that is turned is off by 2^-46 of its length, and what is added up by some roundings more:
-/// 2^-40 of the bounding radius is charged, and 2^-17 of it where there are meshes.
+/// Error bound: a rotated axis is off by 2^-46 of its length, and the sums by some roundings more: 2^-40 of the
+/// bounding radius is added, and 2^-17 of it where there are meshes.
 template <int Degree>
 Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificates::RigidMotion<Degree>& motion) {
   const double radius = shape.bounding_radius;

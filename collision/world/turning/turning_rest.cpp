@@ -25,7 +25,7 @@ typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlo
   return it != pairs_.end() && it->second.rests ? 0 : none;
 }
 
-/// When bodies were looked at, and what has struck them, counts only while they are calm, or rest.
+/// Member::looked and Member::ignored of a body matter only while it is calm or rests, so they are not asked.
 template <class Motion>
 bool TurningRest<Motion>::remembers_nothing() const {
   return pairs_.empty() && woken_.empty() &&
@@ -66,7 +66,7 @@ void TurningRest<Motion>::erase_all(BodySlot slot) {
   while (!of_[slot].others.empty()) erase(std::minmax(slot, of_[slot].others.back()));
 }
 
-/// All bodies of the group of one that rests.
+/// Wakes all bodies of the group of one that rests.
 template <class Motion>
 void TurningRest<Motion>::wake(BodySlot slot) {
   std::vector<BodySlot> group{slot};
@@ -81,7 +81,7 @@ void TurningRest<Motion>::wake(BodySlot slot) {
   }
 }
 
-/// Only these, each of which rests: what is left rests on.
+/// Wakes only these, each of which rests; all others go on resting.
 template <class Motion>
 void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
   for (const BodySlot slot : slots) {
@@ -95,7 +95,7 @@ void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
 template <class Motion>
 bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
   if (resting_ == 0 || !(carries(a) || carries(b))) return false;
-  // What touches it gently is to lie on it, perhaps: until that is known it stays as it is.
+  // What touches a resting body gently may come to lie on it. Until that is known the body goes on resting.
   const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 &&
                       (carries(a) || !bodies_.fixed(a)) && (carries(b) || !bodies_.fixed(b)) &&
                       calm(a, scale({a, b}).acceleration) && calm(b, scale({a, b}).acceleration);
@@ -190,8 +190,8 @@ bool TurningRest<Motion>::calm(BodySlot slot, double acceleration) const {
   return surface_speed(motion, scale.size, clock_.now) <= driven * calm_speed(scale);
 }
 
-/// Whether two bodies that touch without friction slide on each other, or turn about the normal: as wholes, for the
-/// corners of a body that rocks slide to and fro.
+/// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
+/// whole bodies count, since the corners of a body that rocks slide to and fro.
 template <class Motion>
 bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
   const Motion& a = bodies_.motion(key.first);

@@ -60,16 +60,17 @@ void archive_members(Archive& archive, LyingPair& pair) {
 /// Rest in worlds of bodies that turn: not of contacts that slide or roll, but of groups of bodies that do not move at
 /// all. docs/turning.md states the law.
 ///
-/// What is pressed together flies for WorldOptions::shortest_flight, again and again. A body is *calm* while no point
-/// of it is faster than such flights make it. Where calm bodies touch is noted. When all bodies of a group, that is,
-/// those that are linked by such places, down to what is fixed, have been calm for some flights, and forces at these
-/// places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then on they do not
-/// move, exactly, and cost nothing. Those that others hold do not wait for the rest of their group for ever. An impact
-/// wakes what it moves, and what that has held; a change of a body, or of a support, the whole group. What a calm body
-/// touches does not wake: if forces hold that body too, it joins them, and if not those wake that cannot carry it.
+/// Bodies that are pressed together make flights of WorldOptions::shortest_flight, again and again. A body is *calm*
+/// while no point of it is faster than such flights make it. Where calm bodies touch is noted. A group is all bodies
+/// that are linked by such places, down to fixed ones. When all bodies of a group have been calm for some flights, and
+/// forces at these places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then
+/// on they do not move at all, and cost nothing. Bodies of a group that are held without its other bodies come to rest
+/// after a while even if those move. An impact wakes the bodies that it moves, and those that they have held; a change
+/// of a body, or of a support, wakes the whole group. A calm body wakes nothing that it touches: if forces hold it too,
+/// it comes to rest as well, and if not, those bodies wake that cannot carry it.
 ///
-/// A part of World that owns its state. It reads the bodies, and tells its listener what follows. All of it is a
-/// function of contacts and edits: not of the broad phase, windows or snapshots.
+/// This part of World owns its state. It reads the bodies, and tells its listener what follows. All of it is a function
+/// of contacts and edits, and does not depend on the broad phase, windows or snapshots.
 ///
 /// Cost: O(log n) a contact of calm bodies; nothing for others, and nothing while bodies rest.
 template <class Motion>
@@ -102,20 +103,20 @@ class TurningRest {
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
   bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact);
-  /// Two bodies are about to meet. Returns whether one of them rests and the impulse is to tell whether that wakes: not
-  /// if the other is calm. That may lie on it soon, and bounces off it until then as off a fixed body.
+  /// Two bodies are about to meet. Returns whether one of them rests and the impulse decides whether it wakes. It does
+  /// not if the other is calm: that body may lie on it soon, and until then bounces off it as off a fixed body.
   bool meet(BodySlot a, BodySlot b);
   using MobilityOf = std::function<Mobility(BodySlot)>;
-  /// Then the impulse on b, were the one that rests fixed, and the angular impulses on both. If the one that rests, and
-  /// what it lies on, take it without moving, all stay as they are; if not, those wake that it moves, and what they
-  /// have held. Returns whether any wakes.
+  /// To be called if meet() returned true, with the impulse on b as if the resting body were fixed, and the angular
+  /// impulses on both. If the resting body and those that it lies on take the impulse without moving, nothing changes;
+  /// if not, the bodies that it moves wake, and those that they have held. Returns whether any wakes.
   bool strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
               const Eigen::Vector3d& impulse, const MobilityOf& mobility);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
   void forget(BodySlot slot) { drop_all(slot); }
-  /// The same if it has touched one that it may not collide with any more; false if not.
+  /// The same if it has touched a body that it may not collide with any more; otherwise does nothing and returns false.
   bool drop_filtered(BodySlot slot);
   /// The bodies that a body rests on, and those that rest on it.
   std::vector<BodySlot> partners(BodySlot slot) const;
@@ -131,7 +132,7 @@ class TurningRest {
   /// Throws AuditFailure unless bodies that rest do not move, and rest on something.
   void audit(double t, bool walls) const;
 
-  /// How a body at rest would move by the impulses that have been too small to wake it, but for what it lies on.
+  /// How impulses that were too small to wake a body at rest would make it move if it lay on nothing.
   struct Ignored {
     double since = -never;  ///< s
     Eigen::Vector3d velocity = Eigen::Vector3d::Zero();

@@ -18,8 +18,8 @@ using namespace turning_rest;
 
 namespace {
 
-/// Where a ball is pressed that touches at x: with rolling friction up to that far from there, to where its weight
-/// acts.
+/// The point at which a ball that touches at x is pressed: with rolling friction the point nearest to where its weight
+/// acts, up to that length from x.
 Vector3d pressed_at(const Vector3d& x, const Vector3d& centre, const Vector3d& weight, const Vector3d& normal,
                     double rolling) {
   const double along = dot(normal, weight);
@@ -49,7 +49,8 @@ bool TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   const Group group = find_group(struck, true);
   std::vector<StruckBody> bodies{alone};
   for (std::size_t i = 1; i < group.bodies.size(); ++i) bodies.push_back(moved(group.bodies[i]));
-  // Their weights press on each other meanwhile, so that friction holds what is struck by little and little.
+  // Since the last small impulse the weights have pressed the bodies on each other, so friction can hold more small
+  // impulses.
   const double meanwhile = std::min(clock_.now - of_[struck].ignored.since, calm_flights * flight_);
   for (std::size_t i = 0; i < bodies.size(); ++i)
     bodies[i].velocity.velocity += meanwhile * group.loads[i].acceleration;
@@ -114,8 +115,9 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::without(const Group& gr
 }
 
 /// Bodies that are farthest from balance are left out until what is left is in balance: first those that do not rest
-/// yet. Of what rests those are left out that cannot carry one that is left out. One that leans on a busy body, or on
-/// one that is left out and does so, says nothing of what else it touches.
+/// yet. Of what rests those are left out that cannot carry one that is left out. A body that leans on a busy one,
+/// directly or through others that are left out, may be out of balance for that reason alone. So when it is left out,
+/// the resting bodies that it touches stay.
 template <class Motion>
 typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, bool removed) const {
   const auto leave = [&](std::vector<char> out) {
@@ -157,7 +159,8 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, 
   return group;
 }
 
-/// The bodies that are linked with one by places where they touch, and the forces that these can give.
+/// The group of a body: all bodies that are linked with it by places where they touch, and the forces that are possible
+/// at these places.
 template <class Motion>
 typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot first, bool resting) {
   const double t = clock_.now;

@@ -24,7 +24,8 @@ struct HardwareCounts {
 class HardwareCounters {
  public:
   HardwareCounters() {
-    handles_ = {open(PERF_TYPE_HARDWARE, PERF_COUNT_HW_INSTRUCTIONS), open(PERF_TYPE_HARDWARE, PERF_COUNT_HW_CACHE_MISSES),
+    handles_ = {open(PERF_TYPE_HARDWARE, PERF_COUNT_HW_INSTRUCTIONS),
+                open(PERF_TYPE_HARDWARE, PERF_COUNT_HW_CACHE_MISSES),
                 open(PERF_TYPE_SOFTWARE, PERF_COUNT_SW_PAGE_FAULTS)};
   }
   ~HardwareCounters() {

@@ -1,5 +1,6 @@
-// Our methods by number of bodies and by rate ([Coming06] Figures 7 and 8), and what swept volumes cost in tests at 1 Hz:
-// rings of 64 triangles, elastic, as the tool runs them. Each figure is the mean over some scenes of different seeds.
+// Our methods by number of bodies and by rate ([Coming06] Figures 7 and 8), and what swept volumes cost in tests at 1
+// Hz: rings of 64 triangles, elastic, as the tool runs them. Each figure is the mean over some scenes of different
+// seeds.
 #include "collision/profile.hpp"
 #include "io/run.hpp"
 #include "tests/benchmarks/csv_file.hpp"

@@ -99,10 +99,13 @@ TEST_CASE("A world is drawn where its bodies are, each as what it is") {
   world.add_body(later);
   world.advance_to(1);
   std::map<Drawn, std::vector<Segment>> drawn;
-  const DrawLine line = [&](const Vector3d& from, const Vector3d& to, Drawn what) { drawn[what].push_back({from, to}); };
+  const DrawLine line = [&](const Vector3d& from, const Vector3d& to, Drawn what) {
+    drawn[what].push_back({from, to});
+  };
   draw(world, line, {.sides = 8, .velocity_seconds = 0.5}, 3);
   CHECK(drawn[Drawn::body].size() == 12);
-  check_points(drawn[Drawn::body], [](const Vector3d& x) { CHECK((x - Vector3d(5, 0, 0)).cwiseAbs() == Vector3d::Ones()); });
+  check_points(drawn[Drawn::body],
+               [](const Vector3d& x) { CHECK((x - Vector3d(5, 0, 0)).cwiseAbs() == Vector3d::Ones()); });
   CHECK(drawn[Drawn::fixed].size() == 12);
   CHECK(drawn[Drawn::sensor].size() == 24);
   REQUIRE(drawn[Drawn::velocity].size() == 3);
@@ -111,7 +114,8 @@ TEST_CASE("A world is drawn where its bodies are, each as what it is") {
   drawn.clear();
   draw(world, line, {.bodies = [&](BodyId id) { return id == moving; }});
   CHECK(drawn.size() == 1);
-  check_points(drawn[Drawn::body], [](const Vector3d& x) { CHECK((x - Vector3d(3, 0, 0)).cwiseAbs() == Vector3d::Ones()); });
+  check_points(drawn[Drawn::body],
+               [](const Vector3d& x) { CHECK((x - Vector3d(3, 0, 0)).cwiseAbs() == Vector3d::Ones()); });
 }
 
 TEST_CASE("Partners are joined by one line each") {

@@ -1,6 +1,7 @@
 cmake_minimum_required(VERSION 3.23)
 # Has pages written, opens all of them in one Chromium, each with its driver, and collects what these report.
-# -DCHROMIUM= -DPAGES= (a file: in each line NAME|PAGE|SIZE|DRIVER|WRITE...; see page_tests.cmake) -DFOLDER= (written to)
+# -DCHROMIUM= -DPAGES= (a file: in each line NAME|PAGE|SIZE|DRIVER|WRITE...; see page_tests.cmake) -DFOLDER= (written
+# to)
 file(REMOVE_RECURSE "${FOLDER}")
 file(MAKE_DIRECTORY "${FOLDER}")
 string(CONCAT collector "<head><script>window.pageErrors = [];"

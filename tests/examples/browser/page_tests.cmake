@@ -1,6 +1,6 @@
-# Tests of pages in a browser. To start a browser costs more than most pages do in it, so one opens all of them, one after
-# the other, as the fixture of the tests that then compare what each of them reported.
-# Debian's package is `chromium`; scripts/setup installs it.
+# Tests of pages in a browser. To start a browser costs more than most pages do in it, so one opens all of them, one
+# after the other, as the fixture of the tests that then compare what each of them reported. Debian's package is
+# `chromium`; scripts/setup installs it.
 find_program(KDS_CHROMIUM NAMES chromium chromium-browser google-chrome DOC "A browser for the tests of pages")
 set(KDS_BROWSER_TESTS "${CMAKE_CURRENT_LIST_DIR}")
 set(KDS_PAGES_FOLDER "${CMAKE_CURRENT_BINARY_DIR}/pages")

@@ -110,7 +110,8 @@ BodyPlan draw_body(Random& random, const Style& style) {
   BodyPlan body;
   body.shape = draw_shape_kind(random, style.shapes);
   for (double& x : body.size) x = draw_size(random, style.numbers);
-  // Some boxes are capsules, hulls or compounds. Which ones is told from what has been drawn, so that all else stays as it is.
+  // Some boxes are capsules, hulls or compounds. Which ones is told from what has been drawn, so that all else stays as
+  // it is.
   if (body.shape == ShapeKind::box && body.size[1] < std::min(body.size[0], body.size[2])) {
     body.shape = ShapeKind::capsule;
   }

@@ -27,7 +27,8 @@ void edit(Random& random, const Style& style, Size size, Scenario& scenario) {
     if (random.one_in(3)) add(scenario, draw_body(random, style));
     if (style.sensors && random.one_in(3)) {
       scenario.bodies.push_back(draw_body(random, style));
-      scenario.calls.push_back({.kind = Call::Kind::attach, .body = scenario.bodies.size() - 1, .other = any_body(random, scenario)});
+      scenario.calls.push_back(
+          {.kind = Call::Kind::attach, .body = scenario.bodies.size() - 1, .other = any_body(random, scenario)});
     }
     if (random.one_in(3)) scenario.calls.push_back(draw_call(random, style, scenario.bodies.size()));
     if (random.one_in(6)) {  // an id that is given again at once

@@ -8,7 +8,7 @@
 
 namespace kds::exercises {
 
-/// The lowest of the values that have been taken up.
+/// The lowest of the values that have been inserted.
 struct LowestOfTaken {
   using Element = Motion<2>;
   using Order = certificates::Order<2>;  // Order{a, b}: a <= b

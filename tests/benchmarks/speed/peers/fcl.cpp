@@ -28,8 +28,8 @@ class SweptObject final : public fcl::CollisionObjectd {
   std::uint32_t id_;
 };
 
-/// Refit: all boxes of the tree are computed anew each frame. Else each leaf that moved is taken out and put back, which
-/// FCL also offers.
+/// Refit: all boxes of the tree are computed anew each frame. Else each leaf that moved is taken out and put back,
+/// which FCL also offers.
 template <bool Refit>
 class DynamicTree {
  public:

@@ -24,9 +24,9 @@ inline bool overlap(const SweptBox& a, const SweptBox& b) {
 }
 
 /// At the start of a frame each ball that moves gets the box that it sweeps until the end; each pair of boxes that
-/// overlap is tested for the time at which the balls meet; the earliest meeting or wall is processed, what it moves gets
-/// another box for the rest of the frame and is tested against the balls near it; and so on to the end of the frame.
-/// So it finds the contacts that the event-driven engine finds, but for rounding.
+/// overlap is tested for the time at which the balls meet; the earliest meeting or wall is processed, what it moves
+/// gets another box for the rest of the frame and is tested against the balls near it; and so on to the end of the
+/// frame. So it finds the contacts that the event-driven engine finds, but for rounding.
 ///
 /// BroadPhase: built from the scene and the boxes of all balls;
 ///     move(i, box)             a new box for the frame that begins,
@@ -199,8 +199,8 @@ class FrameSimulation {
   std::uint64_t tests_ = 0;
 };
 
-/// For renew() of broad phases that had better not be changed in mid-frame: they are asked what overlaps the new box, and
-/// the new boxes of the frame are remembered here and searched one by one.
+/// For renew() of broad phases that had better not be changed in mid-frame: they are asked what overlaps the new box,
+/// and the new boxes of the frame are remembered here and searched one by one.
 class RenewedBoxes {
  public:
   void clear() { boxes_.clear(); }
