@@ -18,16 +18,14 @@ using Closest = structures::ClosestPairRule<Path>;
 
 std::string name(Id id) { return "AB" + std::to_string(id); }
 
-double distance(const Path& a, const Path& b, double t) {
-  return std::hypot(a(t)[0] - b(t)[0], a(t)[1] - b(t)[1]);
-}
+double distance(const Path& a, const Path& b, double t) { return std::hypot(a(t)[0] - b(t)[0], a(t)[1] - b(t)[1]); }
 
 int main() {
   MovingSet<Path> aircraft;
   const double now = 0;
-  for (const Path& path : {Path{{{{{0, 12}}, {{0, 3}}}}, 0}, Path{{{{{100, -11}}, {{10, 1}}}}, 0},
-                           Path{{{{{50, 1}}, {{80, -9}}}}, 0}, Path{{{{{20, 8}}, {{60, -3}}}}, 0},
-                           Path{{{{{90, -9}}, {{70, -6}}}}, 0}, Path{{{{{70, -2}}, {{1, 10}}}}, 0}}) {
+  for (const Path& path :
+       {Path{{{{{0, 12}}, {{0, 3}}}}, 0}, Path{{{{{100, -11}}, {{10, 1}}}}, 0}, Path{{{{{50, 1}}, {{80, -9}}}}, 0},
+        Path{{{{{20, 8}}, {{60, -3}}}}, 0}, Path{{{{{90, -9}}, {{70, -6}}}}, 0}, Path{{{{{70, -2}}, {{1, 10}}}}, 0}}) {
     aircraft.add(path, now);
   }
 

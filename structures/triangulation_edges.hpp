@@ -55,7 +55,6 @@ class TriangulationEdges {
   /// One of an edge's two half-edges. Precondition: contains(edge).
   TriangleMesh::Edge half_edge(Number edge) const { return half_edge_[edge]; }
 
-
   /// Looks at the triangles whose corners or neighbours have changed, and calls report(EdgeChange) for each edge that
   /// went, then for each that came. A triangle may be named twice, and need not be in use any more.
   template <class Report>
@@ -159,9 +158,8 @@ class TriangulationEdges {
       fate_[edge] = Fate::gone;
       gone_.push_back(edge);
     }
-    std::sort(gone_.begin(), gone_.end(), [this](Number a, Number b) {
-      return ends_[a] != ends_[b] ? ends_[a] < ends_[b] : a < b;
-    });
+    std::sort(gone_.begin(), gone_.end(),
+              [this](Number a, Number b) { return ends_[a] != ends_[b] ? ends_[a] < ends_[b] : a < b; });
   }
 
   /// An edge with these ends that was there before, and is still to be found. (Points that have passed through each

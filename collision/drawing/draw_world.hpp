@@ -27,9 +27,9 @@ using DrawLine = std::function<void(const Eigen::Vector3d& from, const Eigen::Ve
 
 /// What is drawn of a world.
 struct DrawOptions {
-  int sides = 24;                ///< lines of a circle
-  double velocity_seconds = 0;   ///< s; velocities are drawn if it is > 0
-  bool partners = false;         ///< whether partners are drawn
+  int sides = 24;                        ///< lines of a circle
+  double velocity_seconds = 0;           ///< s; velocities are drawn if it is > 0
+  bool partners = false;                 ///< whether partners are drawn
   std::function<bool(BodyId)> bodies{};  ///< which bodies are drawn; all if empty
 };
 

@@ -183,7 +183,7 @@ class ConvexTouch {
 
   struct Condition {
     std::array<double, std::size_t{Degree} + 1> separation;  ///< along the normal; below the gap: near
-    Eigen::Vector3d normal;                     ///< unit, from a to b
+    Eigen::Vector3d normal;                                  ///< unit, from a to b
 
     double operator()(double tau) const {
       if constexpr (Degree == 1) {

@@ -59,8 +59,8 @@ class PartPairs : public ListOfPartPairs {
 
   PartPairs(const Body& a, const Body& b, double now, double horizon)
       : motion_(a.motion, b.motion, now, horizon, sizes(a.shape, b.shape)) {
-    const bool boxes = !unbounded(a.shape.shape) && !unbounded(b.shape.shape) && !bends(a.shape.shape) &&
-                       !bends(b.shape.shape);
+    const bool boxes =
+        !unbounded(a.shape.shape) && !unbounded(b.shape.shape) && !bends(a.shape.shape) && !bends(b.shape.shape);
     for (std::size_t d = 0; d < 3; ++d) along_[d] = motion_.along(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(d)));
     if (boxes) look_beyond(a.shape, b.shape);
     if (boxes && (has_mesh(a.shape.shape) || has_mesh(b.shape.shape))) {

@@ -19,7 +19,7 @@ template <int Degree>
 struct RelativeMotion {
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1> coefficients;
   std::array<double, std::size_t{Degree} + 1> uncertainty{};  ///< bound on the error of each coefficient
-  double epoch = 0;                              ///< s; the clock's value at tau = 0
+  double epoch = 0;                                           ///< s; the clock's value at tau = 0
 
   Eigen::Vector3d position(double tau) const {
     if constexpr (Degree == 1) {

@@ -37,7 +37,7 @@ class InvalidCompound : public std::invalid_argument {
 /// A part of a compound: a box, a hull or a mesh, and where it is in the body.
 struct CompoundPart {
   Shape shape;
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();                    ///< of its centre, in units of length
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();               ///< of its centre, in units of length
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();  ///< in the axes of the body
 };
 

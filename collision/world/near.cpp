@@ -75,8 +75,7 @@ void Engine<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double u
     }
   };
   answer(
-      "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.meets_swept(slot, swept, from, until); },
-      visit);
+      "World::visit_swept", ask, [&](BodySlot slot) { return volumes_.meets_swept(slot, swept, from, until); }, visit);
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;

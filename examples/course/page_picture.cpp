@@ -65,8 +65,9 @@ std::string Page::picture() const {
     return across(u) + ' ' + down(v);
   };
 
-  std::string svg = "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 480 300\" fill=\"none\">"
-                    "<path fill=\"#fbfaf7\" d=\"M0 0H480V300H0Z\"/>";
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 480 300\" fill=\"none\">"
+      "<path fill=\"#fbfaf7\" d=\"M0 0H480V300H0Z\"/>";
   if (view_ == View::line) svg += "<path stroke=\"#9aa1ab\" d=\"M" + across(now) + " 0V300\"/>";
   std::size_t number = 0;
   while (number < events_.size() && events_[number].time <= now) ++number;

@@ -145,9 +145,8 @@ TEMPLATE_TEST_CASE_SIG("the kinetic alpha complex is that of its points, exactly
     for (std::uint64_t seed = Degree == 1 ? 650 : 653; seed < (Degree == 1 ? 653u : 654u); ++seed) {
       CAPTURE(Degree, static_cast<int>(kind), seed);
       const TrialOptions options{seed, kind, 6, 2 + 3 * (seed % 3), 8, seed % 2 == 0 ? never : 0.4, 8};
-      const Findings found =
-          try_rule(options, Rule(kind == Kind::scales ? 1000 : 1), random_plane_motion<Degree>, check_complex<Degree>,
-                   OtherRadius{});
+      const Findings found = try_rule(options, Rule(kind == Kind::scales ? 1000 : 1), random_plane_motion<Degree>,
+                                      check_complex<Degree>, OtherRadius{});
       CHECK(found.first == "");
       events += found.events.size();
     }
@@ -157,9 +156,7 @@ TEMPLATE_TEST_CASE_SIG("the kinetic alpha complex is that of its points, exactly
 
 TEST_CASE("an alpha complex grows with its radius, and tells what comes and goes", "[alpha_complex]") {
   MovingSet<PlaneMotion<1>> set;
-  const auto at = [](double x, double y, double vx = 0) {
-    return PlaneMotion<1>{{{{{x, vx}}, {{y, 0}}}}, 0};
-  };
+  const auto at = [](double x, double y, double vx = 0) { return PlaneMotion<1>{{{{{x, vx}}, {{y, 0}}}}, 0}; };
   Kinetic<DelaunayRule<PlaneMotion<1>>> triangulation(set, 0);
   using Rule = AlphaComplexRule<PlaneMotion<1>>;
   Kinetic<Rule> complex(triangulation, 0, Rule(1));
@@ -188,7 +185,7 @@ TEST_CASE("an alpha complex grows with its radius, and tells what comes and goes
   CHECK(right({{0, 1}, {0, 2}}, {}));
   resize(5);
   CHECK(right({{0, 1}, {0, 2}, {1, 2}}, {{0, 1, 2}}));  // right-angled: the longest side is a diameter of its circle
-  simulator.advance_to(13.75);  // 3 at (16.25, 0)
+  simulator.advance_to(13.75);                          // 3 at (16.25, 0)
   CHECK(right({{0, 1}, {0, 2}, {1, 2}}, {{0, 1, 2}}));
   simulator.advance_to(14.25);  // nearer to 1 than 10
   CHECK(right({{0, 1}, {0, 2}, {1, 2}, {1, 3}}, {{0, 1, 2}}));
@@ -218,8 +215,8 @@ TEST_CASE("an alpha complex keeps to its measures", "[alpha_complex]") {
   CHECK(check_complex<1>(complex.rule(), set, 1) == 0);
   CHECK(m.events > 100);
   CHECK(m.external > m.events / 2);
-  CHECK(m.most_held < 11 * n);   // compact
-  CHECK(m.most_touched <= 20);   // responsive
+  CHECK(m.most_held < 11 * n);  // compact
+  CHECK(m.most_touched <= 20);  // responsive
   CHECK(closest.measures().followed == complex.measures().followed);
 }
 

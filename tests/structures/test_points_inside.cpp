@@ -245,8 +245,8 @@ TEST_CASE("points of one moving rectangle are counted, each event one more or on
   const Measures m = inside.measures();
   CHECK(wrong == 0);
   CHECK(m.external > 50);
-  CHECK(m.most_touched <= 4);    // responsive
-  CHECK(m.most_held <= 4 * n);   // compact
+  CHECK(m.most_touched <= 4);   // responsive
+  CHECK(m.most_held <= 4 * n);  // compact
 }
 
 }  // namespace test_points_inside

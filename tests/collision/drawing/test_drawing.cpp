@@ -77,8 +77,8 @@ TEST_CASE("A mesh that bends is drawn as it is at that time") {
   const std::vector<Vector3d> flat{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   std::vector<Vector3d> bent = flat;
   bent[2] = {0, 1, 4};
-  const auto script = std::make_shared<const MeshScript>(
-      std::vector<MeshScript::Keyframe>{{0, flat}, {2, bent}}, std::vector<Mesh::Triangle>{{0, 1, 2}});
+  const auto script = std::make_shared<const MeshScript>(std::vector<MeshScript::Keyframe>{{0, flat}, {2, bent}},
+                                                         std::vector<Mesh::Triangle>{{0, 1, 2}});
   const auto lines = outline(BendingMesh{script}, 1);
   REQUIRE(lines.size() == 3);
   CHECK(lines[1][1] == Vector3d(0, 1, 2));
