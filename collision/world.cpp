@@ -241,6 +241,17 @@ void BasicWorld<Motion>::visit_partners(BodyId id, BodyVisitor visit) const {
 }
 
 template <class Motion>
+void BasicWorld<Motion>::visit_bodies(BodyVisitor visit) const {
+  const Bodies<Motion>& bodies = engine_->bodies();
+  std::vector<BodyId> ids;
+  ids.reserve(bodies.size());
+  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
+    if (bodies.alive(slot)) ids.push_back(bodies.id_of(slot));
+  }
+  for (const BodyId id : ids) visit(id);
+}
+
+template <class Motion>
 WorldCounters BasicWorld<Motion>::counters() const {
   return engine_->counters();
 }

@@ -145,9 +145,10 @@ class BasicWorld final {
   /// Processes events up to t until this much time of the wall clock has passed, but at least one, or a small part of
   /// the work before it: bodies that enter, pairs to test and what the broad phase does in between come in parts of
   /// less than a millisecond, as a rule. True if t was reached. The log is that of advance_to(), whatever the budgets.
-  /// Three kinds of work are not divided, and may exceed the budget: a call of a listener, a heap that comes to rest,
-  /// and predictions beyond the end of a window. Throws as advance_to() does, and std::invalid_argument for a budget
-  /// that is negative or not a number.
+  /// Not divided, so that they may exceed the budget, are a call of a listener, a heap that comes to rest, predictions
+  /// beyond the end of a window, pieces that start at one time and are not the first of their bodies, and the growth of
+  /// a table, which takes some half a microsecond for each body in the world. Throws as advance_to() does, and
+  /// std::invalid_argument for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
@@ -207,6 +208,10 @@ class BasicWorld final {
   /// Calls visit(id), in order of the slots, for each body that a body touches or rests on, as touching() and
   /// resting() say. `visit` is called when the answer is complete, and may change the world.
   void visit_partners(BodyId id, BodyVisitor visit) const;
+
+  /// Calls visit(id), in order of the slots, for each body, those that enter later included. `visit` is called when the
+  /// answer is complete, and may change the world. O(n), n being the most bodies that there have been at one time.
+  void visit_bodies(BodyVisitor visit) const;
 
   WorldCounters counters() const;
   /// The broad phase in use: a name of broad_phase_kind.hpp; "auto" is "grid", or "few-boxes" with few bodies.

@@ -36,7 +36,8 @@ struct Ray {
 template <class Motion>
 std::optional<Hit> cast(const BasicWorld<Motion>& world, const Ray& ray, const BodyFilter& filter = {});
 
-/// The same of a shape in its orientation (place()) whose centre goes the way. Not of a mesh that bends, nor of a half-space.
+/// The same of a shape in its orientation (place()) whose centre goes the way. Not of a mesh that bends, nor of a
+/// half-space.
 template <class Motion>
 std::optional<Hit> cast(const BasicWorld<Motion>& world, const PlacedShape& shape, const Ray& way,
                         const BodyFilter& filter = {});

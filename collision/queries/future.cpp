@@ -7,8 +7,10 @@
 #include "collision/vectors.hpp"
 #include "collision/world/checked_pieces.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -67,33 +69,54 @@ std::optional<Contact> meeting(const MovingShape<Motion>& a, const MovingShape<M
   return contact_at(a, b, t, found);
 }
 
+/// Calls visit(id) for each body in the box around the way.
+template <class Motion, class Visit>
+void visit_on_way(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, double until, const Visit& visit) {
+  if (unbounded(mover.shape.shape)) {
+    world.visit_overlapping(Vector3d::Constant(-never), Vector3d::Constant(never), visit);
+  } else {
+    world.visit_swept(box_of(mover), until, visit);
+  }
+}
+
+template <class Motion>
+std::optional<Hit> hit(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, BodyId id, double until,
+                       ContactMode mode) {
+  const PlacedShape shape = world.shape(id);
+  const MovingShape<Motion> body{shape, world.motion(id)};
+  const auto contact = meeting(mover, body, world.now(), until, mode);
+  return contact ? std::optional(Hit{id, *contact}) : std::nullopt;
+}
+
 /// The first of the bodies that are accepted.
 template <class Motion, class Accept>
 std::optional<Hit> first_met(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, double until,
                              ContactMode mode, const Accept& accept) {
   std::optional<Hit> first;
-  const auto look = [&](BodyId id) {
+  visit_on_way(world, mover, until, [&](BodyId id) {
     if (!accept(id)) return;
-    const PlacedShape shape = world.shape(id);
-    const MovingShape<Motion> body{shape, world.motion(id)};
-    const auto contact = meeting(mover, body, world.now(), first ? first->contact.time : until, mode);
-    if (!contact) return;
-    const Hit hit{id, *contact};
-    if (!first || detail::sooner(hit, *first)) first = hit;
-  };
-  if (unbounded(mover.shape.shape)) {
-    world.visit_overlapping(Vector3d::Constant(-never), Vector3d::Constant(never), look);
-  } else {
-    world.visit_swept(box_of(mover), until, look);
-  }
+    const auto met = hit(world, mover, id, first ? first->contact.time : until, mode);
+    if (met && (!first || detail::sooner(*met, *first))) first = met;
+  });
   return first;
 }
 
-}  // namespace
+/// All of the bodies that are accepted, by time.
+template <class Motion, class Accept>
+std::vector<Hit> all_met(const BasicWorld<Motion>& world, const MovingShape<Motion>& mover, double until,
+                         ContactMode mode, const Accept& accept) {
+  std::vector<Hit> all;
+  visit_on_way(world, mover, until, [&](BodyId id) {
+    if (!accept(id)) return;
+    if (const auto met = hit(world, mover, id, until, mode)) all.push_back(*met);
+  });
+  std::sort(all.begin(), all.end(), detail::sooner);
+  return all;
+}
 
+/// Throws unless next_contact() can look for what such a shape meets.
 template <class Motion>
-std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
-                                double until, const BodyFilter& filter) {
+void require_mover(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion, double until) {
   require_span("next_contact", world, until);
   require_shape<Motion>(shape);
   if (!in_range(motion) || !(path_of(motion).start <= world.now())) {
@@ -103,8 +126,24 @@ std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedSha
   if constexpr (turns<Motion>) {
     require_no_spin(shape.shape, motion, "next_contact: motion");
   }
+}
+
+}  // namespace
+
+template <class Motion>
+std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
+                                double until, const BodyFilter& filter) {
+  require_mover(world, shape, motion, until);
   return first_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
                    [&](BodyId id) { return detail::accepts(filter, id); });
+}
+
+template <class Motion>
+std::vector<Hit> next_contacts(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
+                               double until, const BodyFilter& filter) {
+  require_mover(world, shape, motion, until);
+  return all_met(world, MovingShape<Motion>{shape, motion}, until, ContactMode::transparent,
+                 [&](BodyId id) { return detail::accepts(filter, id); });
 }
 
 template <class Motion>
@@ -115,6 +154,16 @@ std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body,
   const PlacedShape shape = world.shape(body);
   return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
                    [&](BodyId id) { return id != body && detail::accepts(filter, id); });
+}
+
+template <class Motion>
+std::vector<Hit> next_contacts_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
+                                  ContactMode mode) {
+  require_span("next_contacts_of", world, until);
+  if (!entered(world, body)) return {};
+  const PlacedShape shape = world.shape(body);
+  return all_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
+                 [&](BodyId id) { return id != body && detail::accepts(filter, id); });
 }
 
 template <class Motion>
@@ -140,6 +189,10 @@ Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, d
                                            const BodyFilter&);                                                   \
   template std::optional<Hit> next_contact_of(const BasicWorld<motion>&, BodyId, double, const BodyFilter&,      \
                                               ContactMode);                                                      \
+  template std::vector<Hit> next_contacts(const BasicWorld<motion>&, const PlacedShape&, const motion&, double,  \
+                                          const BodyFilter&);                                                    \
+  template std::vector<Hit> next_contacts_of(const BasicWorld<motion>&, BodyId, double, const BodyFilter&,       \
+                                             ContactMode);                                                       \
   template std::optional<Contact> next_contact_between(const BasicWorld<motion>&, BodyId, BodyId, double,        \
                                                        ContactMode);                                             \
   template Approach closest_approach(const BasicWorld<motion>&, BodyId, BodyId, double);

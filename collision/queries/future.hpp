@@ -9,6 +9,7 @@
 #include "collision/world.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace kds::collision {
 
@@ -26,11 +27,22 @@ template <class Motion>
 std::optional<Hit> next_contact(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
                                 double until, const BodyFilter& filter = {});
 
+/// All bodies that it meets in [now(), until], each once, when they first meet, by time: of a place, who enters it
+/// before then. Cost: a test for each body in the box around the whole way.
+template <class Motion>
+std::vector<Hit> next_contacts(const BasicWorld<Motion>& world, const PlacedShape& shape, const Motion& motion,
+                               double until, const BodyFilter& filter = {});
+
 /// The first body that a body of the world meets; none if it has not entered. Mode `resolved`: what it touches at now()
 /// is met only if the two approach each other; `transparent`: what it overlaps is met at now().
 template <class Motion>
 std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until,
                                    const BodyFilter& filter = {}, ContactMode mode = ContactMode::resolved);
+
+/// All bodies that a body of the world meets, each once, by time.
+template <class Motion>
+std::vector<Hit> next_contacts_of(const BasicWorld<Motion>& world, BodyId body, double until,
+                                  const BodyFilter& filter = {}, ContactMode mode = ContactMode::resolved);
 
 /// When and where two bodies of the world meet, if they do and both have entered; the normal points from a to b.
 template <class Motion>

@@ -96,7 +96,7 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
   bodies_[slot] = from.bodies_[of];
   movers_[slot] = from.movers_[of];
   if constexpr (turns<Motion>) motions_[slot] = from.motions_[of];
-  bodies_[slot].entered = false;
+  bodies_[slot].entered = bodies_[slot].waits = false;
   filters_ = filters_ || filter(slot) != CollisionFilter{};
   sensors_ = sensors_ || bodies_[slot].sensor;
   ++alive_;
@@ -136,7 +136,9 @@ void Bodies<Motion>::set_mass(BodySlot slot, double mass) {
 
 template <class Motion>
 void Bodies<Motion>::remove(BodySlot slot) {
-  std::erase(waiting_, slot);  // otherwise the next body in this slot would enter in its place
+  if (waits(slot)) {  // otherwise the next body in this slot would enter in its place
+    waiting_.erase(std::find(waiting_.begin() + static_cast<std::ptrdiff_t>(taken_), waiting_.end(), slot));
+  }
   bodies_[slot] = Body{};
   ignored_.forget(slot);
   attachments_.detach(slot);
@@ -156,16 +158,15 @@ void Bodies<Motion>::reserve(std::size_t bodies) {
 }
 
 template <class Motion>
-bool Bodies<Motion>::waits(BodySlot slot) const {
-  return std::find(waiting_.begin(), waiting_.end(), slot) != waiting_.end();
-}
-
-template <class Motion>
 std::vector<BodySlot> Bodies<Motion>::take_waiting(std::size_t most) {
-  if (most >= waiting_.size()) return std::exchange(waiting_, {});
-  const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(most);
-  std::vector<BodySlot> taken(waiting_.begin(), end);
-  waiting_.erase(waiting_.begin(), end);
+  const auto part = waiting().first(std::min(most, waiting().size()));
+  std::vector<BodySlot> taken(part.begin(), part.end());
+  for (const BodySlot slot : taken) bodies_[slot].waits = false;
+  taken_ += static_cast<BodySlot>(taken.size());
+  if (!any_waits()) {
+    std::vector<BodySlot>().swap(waiting_);
+    taken_ = 0;
+  }
   return taken;
 }
 
@@ -217,7 +218,8 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
   Image image;
   image.meshes = meshes();
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) describe(slot, image.bodies.emplace_back(), image.meshes);
-  image.generations = generations_, image.free = free_, image.waiting = waiting_;
+  image.generations = generations_, image.free = free_;
+  image.waiting.assign(waiting().begin(), waiting().end());
   image.ignored = ignored_.pairs(), image.attached = attachments_.all();
   return image;
 }
@@ -269,6 +271,7 @@ void Bodies<Motion>::lend() {
   LargeVector<Motion>().swap(motions_);
   LargeVector<Body>().swap(bodies_);
   std::vector<BodySlot>().swap(waiting_);
+  taken_ = 0;
 }
 
 template <class Motion>
@@ -301,7 +304,7 @@ void Bodies<Motion>::set_shape(BodySlot slot, PlacedShape placed) {
 
 template <class Motion>
 void Bodies<Motion>::become(const Image& image) {
-  generations_ = image.generations, free_ = image.free, waiting_ = image.waiting;
+  generations_ = image.generations, free_ = image.free, waiting_ = image.waiting, taken_ = 0;
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
@@ -313,6 +316,7 @@ void Bodies<Motion>::become(const Image& image) {
   for (BodySlot slot = 0; slot < count; ++slot) {
     if (image.bodies[slot].alive) become(slot, image.bodies[slot]);
   }
+  for (const BodySlot slot : waiting_) bodies_[slot].waits = true;
 }
 
 template <class Motion>

@@ -89,6 +89,7 @@ struct Body
   std::uint64_t user_data = 0;
   bool alive = false;
   bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
+  bool waits = false;          ///< its motion has begun, and it is about to enter
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
   double burst_start = -never;
   std::shared_ptr<const PlacedShape> shape;  ///< null if it is placed_ball(bounding_radius)
@@ -219,11 +220,11 @@ class Bodies {
   void reserve(std::size_t bodies);
 
   /// A body's motion begins now: it waits to enter.
-  void wait(BodySlot slot) { waiting_.push_back(slot); }
-  bool any_waits() const { return !waiting_.empty(); }
-  bool waits(BodySlot slot) const;
-  const std::vector<BodySlot>& waiting() const { return waiting_; }
-  /// Takes those that have waited longest, `most` or all.
+  void wait(BodySlot slot) { bodies_[slot].waits = true, waiting_.push_back(slot); }
+  bool any_waits() const { return !waiting().empty(); }
+  bool waits(BodySlot slot) const { return bodies_[slot].waits; }
+  std::span<const BodySlot> waiting() const { return std::span<const BodySlot>(waiting_).subspan(taken_); }
+  /// Takes those that have waited longest, all or so many. Cost: O(1) a body that is taken.
   std::vector<BodySlot> take_waiting(std::size_t most);
 
   /// By slot, the number of a body: the order of events of one time, and of the two bodies of a pair, is the order of
@@ -278,7 +279,7 @@ class Bodies {
   /// By slot, up to the last from which a body was removed: the generation of the body that is there, or of the next.
   std::vector<std::uint32_t> generations_;
   std::vector<BodySlot> free_;
-  std::vector<BodySlot> waiting_;
+  std::vector<BodySlot> waiting_;  ///< and before them those that have been taken, taken_ of them
   LargeVector<BodySlot> numbers_;
   IgnoredPairs ignored_;
   Attachments attachments_;
@@ -286,6 +287,7 @@ class Bodies {
   std::size_t lent_ = 0;  ///< slots, while others have the bodies
   bool filters_ = false;
   bool sensors_ = false;
+  BodySlot taken_ = 0;
 };
 
 #define KDS_DECLARE(motion) extern template class Bodies<motion>;

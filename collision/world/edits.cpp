@@ -223,7 +223,7 @@ template <class Motion>
 void Engine<Motion>::expect_new_bodies() {
   constexpr std::size_t sample = 256;
   expected_ = bodies_.slots();
-  const std::vector<BodySlot>& waiting = bodies_.waiting();
+  const std::span<const BodySlot> waiting = bodies_.waiting();
   const std::size_t step = std::max<std::size_t>(waiting.size() / sample, 1);
   std::vector<Entry> entries;
   std::vector<KineticBox<Motion::degree>> boxes;

@@ -162,6 +162,12 @@ bool Engine<Motion>::guarded_event(double limit, Search search) {
   }
 }
 
+/// How much of work that can be divided is done between two looks at the clock.
+template <class Motion>
+std::size_t Engine<Motion>::part_of_work() const {
+  return deadline_ ? small_part : ~std::size_t{0};
+}
+
 template <class Motion>
 inline typename Engine<Motion>::Due Engine<Motion>::next_due() const {
   Due first{never, Task::start_pieces};
@@ -238,8 +244,12 @@ bool Engine<Motion>::next_event(double limit, Search search) {
   double reached = callers_now_;  // the clock if no event follows
   // Where it is not known that anything will happen, the broad phase runs ahead of the clock.
   double broad_phase_reached = clock_.now;
-  const std::size_t part = deadline_ ? small_part : ~std::size_t{0};
+  const std::size_t part = part_of_work();
   for (;;) {
+    if (!looks && scripts_.next_time() <= clock_.now) {  // the rest of those of which a part has been started
+      start_pieces();
+      return true;
+    }
     if (bodies_.any_waits()) enter_new_bodies(part);
     if (bodies_.any_waits()) {
       if (late()) return true;
@@ -373,10 +383,11 @@ bool Engine<Motion>::advance_for(double budget_seconds, double t) {
   return true;
 }
 
-/// Starts all pieces that are due in one go: bodies that jump together are not apart in between.
+/// Starts all pieces that are due in one go: bodies that jump together are not apart in between. But those of bodies
+/// that enter only make them wait, so with a deadline they are started in parts.
 template <class Motion>
 void Engine<Motion>::start_pieces() {
-  auto pieces = scripts_.take_next();
+  auto pieces = scripts_.take_next(part_of_work(), [&](BodySlot slot) { return !bodies_[slot].entered; });
   std::vector<char> jumps;
   for (auto& [slot, motion] : pieces) {
     if constexpr (turns<Motion>) {

@@ -205,6 +205,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
   bool guarded_event(double limit, Search search);
+  std::size_t part_of_work() const;
   bool late() const { return deadline_ && WallClock::now() >= *deadline_; }
   /// How far the broad phase has come: to the end, to a pair that it has reported, or until the deadline.
   enum class Ran { all, to_a_pair, until_late };

@@ -36,24 +36,6 @@ void Scripts<Motion>::clear(BodySlot slot) {
 }
 
 template <class Motion>
-std::vector<typename Scripts<Motion>::Piece> Scripts<Motion>::take_next() {
-  std::vector<Piece> pieces;
-  const double t = next_time();
-  while (!starts_.empty() && starts_.top().time == t) {
-    const BodySlot slot = starts_.top().slot;
-    auto& script = scripts_[slot];
-    pieces.push_back({slot, script.back()});
-    script.pop_back();
-    if (script.empty()) {
-      starts_.clear(slot);
-    } else {
-      starts_.set(slot, path_of(script.back()).start);
-    }
-  }
-  return pieces;
-}
-
-template <class Motion>
 void Scripts<Motion>::become(const Image& image) {
   scripts_ = image.of;
   starts_.resize(0);

@@ -45,8 +45,13 @@ class Scripts {
     BodySlot slot;
     Motion motion;
   };
-  /// Takes all that begin at next_time(), by slot.
-  std::vector<Piece> take_next();
+  /// Takes those that begin at next_time(), by slot: all, or so many if `divides(slot)` is true of each of their
+  /// bodies.
+  template <class Divides>
+  std::vector<Piece> take_next(std::size_t most, const Divides& divides);
+  std::vector<Piece> take_next() {
+    return take_next(0, [](BodySlot) { return false; });
+  }
 
   /// All of it, as plain data: the pieces of each body, last first.
   struct Image {
@@ -71,6 +76,27 @@ class Scripts {
 #define KDS_DECLARE(motion) extern template class Scripts<motion>;
 KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
+
+template <class Motion>
+template <class Divides>
+std::vector<typename Scripts<Motion>::Piece> Scripts<Motion>::take_next(std::size_t most, const Divides& divides) {
+  std::vector<Piece> pieces;
+  const double t = next_time();
+  bool divided = true;
+  while (!starts_.empty() && starts_.top().time == t && (!divided || pieces.empty() || pieces.size() < most)) {
+    const BodySlot slot = starts_.top().slot;
+    divided = divided && divides(slot);
+    auto& script = scripts_[slot];
+    pieces.push_back({slot, script.back()});
+    script.pop_back();
+    if (script.empty()) {
+      starts_.clear(slot);
+    } else {
+      starts_.set(slot, path_of(script.back()).start);
+    }
+  }
+  return pieces;
+}
 
 template <class Motion>
 template <class Alive>

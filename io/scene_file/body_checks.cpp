@@ -16,7 +16,9 @@ std::string position_of(const MemberPath& path, std::size_t piece) {
   return path("motion[" + std::to_string(piece) + "].position");
 }
 
+/// A half-space reaches beyond all walls, and meets none.
 void check_inside_walls(const SceneBody& body, const Domain& domain, const MemberPath& path) {
+  if (kds::collision::unbounded(body.shape)) return;
   const double radius = kds::collision::place(body.shape, body.orientation).bounding_radius;
   for (std::size_t p = 0; p < body.motion.size(); ++p) {
     const Eigen::Vector3d& at = body.motion[p].path.coefficients[0];

@@ -2,6 +2,7 @@
 #include "collision/drawing/draw_world.hpp"
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
+#include "collision/queries/near_pairs.hpp"
 #include "collision/queries/nearest.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
@@ -12,7 +13,6 @@
 #include <catch2/catch.hpp>
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -292,6 +292,27 @@ TEST_CASE("recipe: will they meet, and how near do they come") {
   CHECK(hit->contact.time == 2.375);
 }
 
+TEST_CASE("recipe: who enters a place, and who comes near whom") {
+  World<1> world({});
+  for (const double x : {4, 12, 8}) {
+    world.add_body({.shape = Sphere{1}, .motion = {Line::line({x, 0, 0}, {-1, 0, 0})}});
+  }
+  const BodyId crossing = world.add_body({.shape = Sphere{1}, .motion = {Line::line({6, -6, 0}, {0, 1, 0})}});
+  const PlacedShape gate = place(Box{{1, 1, 1}}, Eigen::Quaterniond::Identity());
+  const auto entering = next_contacts(world, gate, Line::line({0, 0, 0}, {0, 0, 0}), 7);
+  REQUIRE(entering.size() == 2);  // body 1 comes at 10
+  CHECK(entering[0].contact.time == 2);
+  CHECK(entering[1].contact.time == 6);
+  const auto near = pairs_nearer_than(world, 3, 7);
+  REQUIRE(near.size() == 2);
+  CHECK(near[0].pair == BodyPair{2, crossing});
+  CHECK(near[0].approach.time == 4);  // 2 * sqrt(2) from each other
+  CHECK(near[1].pair == BodyPair{1, crossing});
+  CHECK(near[1].approach.time == 6);  // and 0: they meet
+  world.advance_to(5.5);
+  CHECK(contact_pairs(world) == std::vector{BodyPair{1, crossing}});
+}
+
 TEST_CASE("recipe: what is near, and all bodies") {
   World<1> world({});
   for (const double x : {1, 4, 9, 16}) {
@@ -302,10 +323,8 @@ TEST_CASE("recipe: what is near, and all bodies") {
   CHECK(two[0].body == 2);
   CHECK(two[0].distance == 0.5);
   CHECK(two[1].point == Vector3d(4.5, 0, 0));
-  constexpr double infinity = std::numeric_limits<double>::infinity();
   std::vector<BodyId> all;
-  world.visit_overlapping(Vector3d::Constant(-infinity), Vector3d::Constant(infinity),
-                          [&](BodyId id) { all.push_back(id); });
+  world.visit_bodies([&](BodyId id) { all.push_back(id); });  // those that enter later too
   CHECK(all == std::vector<BodyId>{0, 1, 2, 3});
 }
 

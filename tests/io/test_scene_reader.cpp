@@ -308,6 +308,16 @@ TEST_CASE("scene reader: keys that may be left out") {
   CHECK(scene.begin_time == 0);
 }
 
+TEST_CASE("scene reader: a half-space may reach through reflecting walls, which it never meets") {
+  const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic",
+      "domain": {"min": [-5, -5, -5], "max": [5, 5, 5], "walls": "reflect"},
+      "bodies": [{"shape": {"half_space": {"normal": [0, 0, 1], "offset": 0}}, "fixed": true,
+                  "motion": [{"start": 0, "position": [[0, 0, 0]]}]}]})",
+                                  "scene.json");
+  REQUIRE(scene.bodies.size() == 1);
+  CHECK(unbounded(scene.bodies[0].shape));
+}
+
 TEST_CASE("scene reader: restitution is the scene's where a body or the walls have none of their own") {
   const auto read = [](const std::string& of_scene, const std::string& of_domain, const std::string& of_body) {
     return parse_scene(R"({"scene": 1, "end_time": 2, )" + of_scene +

@@ -23,10 +23,11 @@ struct Result {
   std::size_t calls = 0;
 };
 
-constexpr std::size_t bodies = 500;
+constexpr std::size_t bodies = 360;
 constexpr double end = 0.25;  // s
 
-/// Many bodies enter at once, some of them in contact; as many again enter while it runs, and some are moved.
+/// Many bodies enter at once, some of them in contact; as many again enter while it runs, and some are moved. As many
+/// begin their motions at one time to come, at which some others jump.
 Result run(Response response, const Way& way) {
   WorldOptions options = with_response(response);
   options.walls = Walls{{-9, -9, -9}, {9, 9, 9}, 1};
@@ -40,10 +41,11 @@ Result run(Response response, const Way& way) {
   const auto vector = [&](double most) {
     return Vector3d(random.between(-most, most), random.between(-most, most), random.between(-most, most));
   };
-  const auto add = [&] {
+  constexpr double late_start = 0.15;  // s
+  const auto add = [&](double start) {
     for (std::size_t i = 0; i < bodies; ++i) {
       auto described = body<2>(i % 8 == 0 ? Shape(Box{{0.3, 0.4, 0.5}}) : Shape(Sphere{0.4}),
-                               motion<2>(vector(8), vector(4), vector(1), world->now()));
+                               motion<2>(vector(8), vector(4), vector(1), start));
       described.sensor = i % 50 == 0;
       world->add_body(described);
     }
@@ -59,9 +61,15 @@ Result run(Response response, const Way& way) {
       }
     }
   };
-  add();
+  add(0);
+  add(late_start);
   advance(0.1);
-  add();
+  add(world->now());
+  for (BodyId id = 40; id < 3 * bodies; id += 30) {
+    if (id >= bodies && id < 2 * bodies) continue;
+    const World<2>::Motion jump[] = {motion<2>(vector(8), vector(4), zero, late_start)};
+    world->append_motion(id, jump);
+  }
   for (BodyId id = 0; id < 40; ++id) world->update_motion(id, motion<2>(vector(8), vector(4), zero, world->now()));
   advance(end);
   world->audit();
@@ -81,6 +89,57 @@ TEST_CASE("What is done for budgets gives the log that is made in one go") {
       CHECK(parts.events == whole.events);
     }
   }
+}
+
+TEST_CASE("Some bodies that begin their motions at one time have, and the world can be edited, asked and saved") {
+  EventLog<1> log, log_of_copy, log_of_whole;
+  World<1> world(with_response(Response::none), &log), copy(with_response(Response::none), &log_of_copy),
+      whole(with_response(Response::none), &log_of_whole);
+  constexpr BodyId count = 1000;
+  const auto line = [](double x, double start) { return World<1>::Motion::line({x, 0, 0}, zero, start); };
+  for (World<1>* of : {&world, &whole}) {
+    for (BodyId i = 0; i < count; ++i) {
+      auto described = ball<1>(1, zero);
+      described.motion = {line(1.5 * static_cast<double>(i), 1), line(1.5 * static_cast<double>(i), 2)};
+      of->add_body(described);
+    }
+  }
+  while (world.now() < 1) CHECK_FALSE(world.advance_for(0, 3));
+  CHECK(log.events.empty());
+  std::size_t found = 0;
+  const auto far = Vector3d::Constant(1e6);
+  world.visit_overlapping(-far, far, [&](BodyId) { ++found; });
+  CHECK(found == 64);  // one part
+  CHECK(world.next_time() == 1);
+  restore(save(world), copy);
+  for (World<1>* of : {&world, &copy}) {
+    of->advance_to(1.5);
+    of->audit();
+    of->advance_to(3);
+  }
+  whole.advance_to(3);
+  CHECK(log.count(Kind::overlap) == count - 1);
+  CHECK(log.events == log_of_whole.events);
+  CHECK(log_of_copy.events == log_of_whole.events);
+}
+
+TEST_CASE("Bodies that begin at one time may be removed when some of them have begun, all that wait included") {
+  EventLog<1> log;
+  World<1> world(with_response(Response::none), &log);
+  constexpr BodyId count = 300;
+  for (BodyId i = 0; i < count; ++i) {
+    auto described = ball<1>(1, zero);
+    described.motion = {World<1>::Motion::line({1.5 * static_cast<double>(i), 0, 0}, zero, 1)};
+    world.add_body(described);
+  }
+  while (world.now() < 1) CHECK_FALSE(world.advance_for(0, 3));
+  for (BodyId id = 0; id < 64; ++id) world.remove_body(id);
+  CHECK(world.next_time() == 1);
+  world.update_motion(count - 1, World<1>::Motion::line({-50, 0, 0}, zero, 1));
+  CHECK(world.next_time() == 1);
+  while (!world.advance_for(0, 3)) world.next_time();
+  CHECK(log.count(Kind::overlap) == count - 64 - 2);
+  world.audit();
 }
 
 TEST_CASE("Half of the bodies have entered when a budget is used up, and the world can be edited and asked") {

@@ -1,0 +1,89 @@
+#include "collision/queries/near_pairs.hpp"
+
+#include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/shapes/shape.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <tuple>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+/// How far the bounding volume of a body may be from its centre, whatever its orientation.
+template <class Motion>
+double offset_of(const PlacedShape& shape) {
+  if (ball_radius(shape.shape) > 0) return 0;
+  const bool inside = (shape.low.array() <= 0).all() && (shape.high.array() >= 0).all();
+  return inside && !turns<Motion> ? 0 : shape.bounding_radius;
+}
+
+bool before(const NearPair& x, const NearPair& y) {
+  const auto key = [](const NearPair& near) {
+    return std::tuple(near.approach.time, body_rank(near.pair.a), body_rank(near.pair.b));
+  };
+  return key(x) < key(y);
+}
+
+}  // namespace
+
+template <class Motion>
+std::vector<BodyPair> contact_pairs(const BasicWorld<Motion>& world) {
+  std::vector<BodyPair> pairs;
+  world.visit_bodies([&](BodyId a) {
+    world.visit_partners(a, [&](BodyId b) {
+      if (body_rank(a) < body_rank(b)) pairs.push_back({a, b});
+    });
+  });
+  return pairs;
+}
+
+template <class Motion>
+std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double distance, double until,
+                                        const BodyFilter& filter) {
+  const double now = world.now();
+  if (!(distance > 0 && distance <= largest_magnitude)) {
+    throw std::invalid_argument("pairs_nearer_than: the distance " + std::to_string(distance) +
+                                " is not a positive number below 2^205");
+  }
+  if (!(until >= now && until < never)) {
+    throw std::invalid_argument("pairs_nearer_than: " + std::to_string(until) + " is not a finite time from now on (" +
+                                std::to_string(now) + ")");
+  }
+  std::vector<BodyId> bodies;
+  double offset = 0;
+  world.visit_bodies([&](BodyId id) {
+    if (!(path_of(world.motion(id)).start <= now) || !detail::accepts(filter, id)) return;
+    const PlacedShape shape = world.shape(id);
+    if (unbounded(shape.shape)) return;
+    bodies.push_back(id);
+    offset = std::max(offset, offset_of<Motion>(shape));
+  });
+  const auto counts = [&](BodyId id) {
+    return std::binary_search(bodies.begin(), bodies.end(), id,
+                              [](BodyId x, BodyId y) { return body_rank(x) < body_rank(y); });
+  };
+  std::vector<NearPair> near;
+  const Vector3d reach = Vector3d::Constant(distance + offset);
+  for (const BodyId a : bodies) {
+    const PathOf<Motion>& path = path_of(world.motion(a));
+    world.visit_swept(box_around(path, Vector3d(-reach), reach), until, [&](BodyId b) {
+      if (!(body_rank(a) < body_rank(b)) || !counts(b)) return;
+      const Approach approach = closest_approach(path, path_of(world.motion(b)), now, until);
+      if (approach.distance < distance) near.push_back({{a, b}, approach});
+    });
+  }
+  std::sort(near.begin(), near.end(), before);
+  return near;
+}
+
+#define KDS_INSTANTIATE(motion)                                            \
+  template std::vector<BodyPair> contact_pairs(const BasicWorld<motion>&); \
+  template std::vector<NearPair> pairs_nearer_than(const BasicWorld<motion>&, double, double, const BodyFilter&);
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision
