@@ -34,7 +34,10 @@ function showProgram() {
     }));
     pre.tabIndex = 0;
   }
-  $('code').open = matchMedia('(min-width: 94em)').matches;
+  const wide = matchMedia('(min-width: 94em)');
+  const follow = () => { $('code').open = wide.matches; };
+  follow();
+  wide.addEventListener('change', follow);
   $('code').addEventListener('toggle', resize);
 }
 function toggleProgram() {

@@ -197,7 +197,8 @@ function resize() {
   const below = footer.offsetHeight + parseFloat(getComputedStyle(footer).marginTop) +
     parseFloat(getComputedStyle(document.body).paddingBottom);
   // Of a program that stands below, its first line.
-  const edges = code ? 3 * parseFloat(getComputedStyle(code).paddingTop) : 0;
+  const gap = parseFloat(getComputedStyle(document.querySelector('main')).rowGap);
+  const edges = code ? 2 * parseFloat(getComputedStyle(code).paddingTop) + gap + 2 : 0;
   const folded = code && !beside(code) ? code.firstElementChild.offsetHeight + edges : 0;
   const room = innerHeight - rest - stage.offsetTop - below - folded;
   const height = Math.round(Math.max(260, Math.min(width * (width < 520 ? 0.95 : 0.75), room)));
