@@ -165,7 +165,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   void lend(std::size_t bodies) { bodies_.lend(bodies); }
   void take_back() { bodies_.take_back(); }
   void put_back(const Parcel<Motion>& parcel);
-  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Returns timers that have rung.
+  /// Other worlds have come so far: bodies have entered, and pieces of scripts have begun. Returns timers that have
+  /// rung.
   std::vector<Timers::Image::One> note_passed(double t);
   /// Forgets all but the bodies, until go_on().
   void set_aside();
