@@ -147,8 +147,8 @@ class BasicWorld final {
   /// less than a millisecond, as a rule. True if t was reached. The log is that of advance_to(), whatever the budgets.
   /// Not divided, so that they may exceed the budget, are a call of a listener, a heap that comes to rest, predictions
   /// beyond the end of a window, pieces that start at one time and are not the first of their bodies, and the growth of
-  /// a table, which takes some half a microsecond for each body in the world. Throws as advance_to() does, and
-  /// std::invalid_argument for a budget that is negative or not a number.
+  /// a table, which is proportional to the bodies in the world. Throws as advance_to() does, and std::invalid_argument
+  /// for a budget that is negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before
