@@ -12,6 +12,8 @@ template <class Motion>
 void Engine<Motion>::audit(double t) const {
   require_whole("World::audit");
   t = std::max(t, clock_.now);
+  // Where it is known that no event follows, the broad phase is left behind.
+  if (broad_phase_->next_time() <= t) t = clock_.now;
   broad_phase_->audit(t);
   // Work of this instant may still have to be done.
   if (bodies_.any_waits() || !pairs_.tested() || volumes_.next_time() <= t) return;

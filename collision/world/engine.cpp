@@ -422,11 +422,12 @@ void Engine<Motion>::ring() {
   tell([&](Listener& listener) { listener.timer(world_, timer); });
 }
 
-/// Callers have changed something, so the time until the next event has to be searched again. Edits by callbacks are
-/// counted, so that a run ends.
+/// Callers have changed something, so the time until the next event has to be searched again: after the next step, which
+/// finds out what follows now. Edits by callbacks are counted, so that a run ends.
 template <class Motion>
 void Engine<Motion>::count_edit() {
-  idle_until_ = next_time_ = -never;
+  idle_until_ = -never;
+  next_time_ = stepping_ ? -never : callers_now_;
   idle_for_ever_ = false;
   if (stepping_)
     edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
