@@ -37,6 +37,7 @@ function showProgram() {
   const wide = matchMedia('(min-width: 94em)');
   const follow = () => { $('code').open = wide.matches; };
   follow();
+  addEventListener('load', follow);  // a page in a frame may not know its width before
   wide.addEventListener('change', follow);
   $('code').addEventListener('toggle', resize);
 }
