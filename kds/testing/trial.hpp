@@ -131,15 +131,21 @@ class Tower<Rule, std::tuple<Rules...>> {
   template <class R>
   void make(MovingSet<typename Rule::Element>& elements, double now, const Rule& rule, Recorder recorder) {
     auto& structure = std::get<std::optional<Kinetic<R, Recorder>>>(structures_);
-    R own{};
-    if constexpr (std::is_same_v<R, Rule>) own = rule;
+    // The inner rules are made without arguments.
+    const auto own_rule = [&] {
+      if constexpr (std::is_same_v<R, Rule>) {
+        return rule;
+      } else {
+        return R{};
+      }
+    };
     if constexpr (OuterRule<R>) {
       const auto on = [&]<class... Inners>(const StandsOn<Inners...>*) {
         return typename kds::detail::Standing<R>::Structures(of<typename kds::detail::Told<Inners>::Rule>()...);
       };
-      structure.emplace(on(static_cast<const R*>(nullptr)), now, std::move(own), recorder);
+      structure.emplace(on(static_cast<const R*>(nullptr)), now, own_rule(), recorder);
     } else {
-      structure.emplace(elements, now, std::move(own), recorder);
+      structure.emplace(elements, now, own_rule(), recorder);
     }
   }
 
