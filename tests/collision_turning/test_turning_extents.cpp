@@ -24,7 +24,7 @@ using namespace kds::collision;
 using certificates::RigidMotion;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tests::Random;
+using kds::tests::Random;
 
 Vector3d random_vector(Random& random, double size) {
   return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));

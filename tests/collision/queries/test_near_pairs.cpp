@@ -108,7 +108,7 @@ TEST_CASE("the pairs in contact are those that touch or rest, each once") {
 TEST_CASE("balls that lie on each other are in contact, and what flies is not") {
   World<2> world({.response = Response::elastic});
   const auto ball = [&](double z, bool fixed) {
-    BodyDescription<2> description{.shape = Sphere{1}, .restitution = 0, .fixed = fixed};
+    BodyDescription<2> description{.shape = Sphere{1}, .fixed = fixed, .restitution = 0};
     const Vector3d pull(0, 0, fixed ? 0 : -5);
     description.motion = {certificates::PointMotion<2>::parabola(Vector3d(0, 0, z), Vector3d::Zero(), pull)};
     return world.add_body(description);
