@@ -13,7 +13,7 @@
 
 namespace kds::collision {
 
-/// All places of a box that moves along a line, without end: a prism. A fast body sweeps a long box and a small part of
+/// All places of a box that moves along an infinite line: a prism. A fast body sweeps a long box and a small part of
 /// it: what is outside the prism does not meet the body.
 class BoxSlant {
  public:

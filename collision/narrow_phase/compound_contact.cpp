@@ -31,7 +31,7 @@ bool parts_approach(const TranslatingShape<Degree>& a, const TranslatingShape<De
   const Vector3d velocity_b = b.motion.velocity(contact.time) + surface_rate(b, contact, false).velocity;
   return dot(contact.normal, velocity_b - velocity_a) < 0;
 }
-/// The same of bodies that turn: faster than roundings can feign.
+/// The same for bodies that turn: whether they approach faster than by roundings.
 template <int Degree>
 bool parts_approach(const MovingShape<certificates::RigidMotion<Degree>>& a,
                     const MovingShape<certificates::RigidMotion<Degree>>& b, const Contact& contact) {

@@ -77,8 +77,8 @@ constexpr PairTable<Motion> make_table() {
 template <class Motion>
 constexpr PairTable<Motion> table = make_table<Motion>();
 
-/// Up to when exact tests look from t0 on. The paths of bodies that turn may come near each other for ever, so that to
-/// look to the end of time would take for ever.
+/// How far ahead of t0 exact tests look. Bodies that turn may come near each other again and again, so a search to the
+/// end of time would not end.
 template <class Motion>
 double end_of_search(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon) {
   if constexpr (turns<Motion>) {

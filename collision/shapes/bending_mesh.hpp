@@ -44,8 +44,8 @@ struct ShapeKind<BendingMesh> {
 
   static Eigen::Vector3d measures(const BendingMesh&) { return Eigen::Vector3d::Ones(); }
 
-  /// The whole script, of each body for itself. What its tree was made from is written where it is not the first
-  /// keyframe: times of separations depend on the tree.
+  /// Writes the whole script, separately for each body; and the positions from which its tree was made, if they are not
+  /// those of the first keyframe, since times of separations depend on the tree.
   template <class Archive>
   static void archive(Archive& archive, BendingMesh& shape, PlacedShape&, const NumberedMeshes&) {
     std::vector<MeshScript::Keyframe> keyframes;

@@ -70,8 +70,8 @@ Compound compound(std::span<const CompoundPart> parts);
 
 namespace detail {
 
-/// Sets the parts of a shape whose shape and rotation are set: those of a compound, else none. None, either, if it
-/// cannot be placed, which place_turned() then says.
+/// Sets the parts of a shape whose shape and rotation are set: those of a compound, else none. None, too, if it cannot
+/// be placed: then place_turned() throws.
 void place_parts(PlacedShape& placed);
 
 /// Whether the parts of two placed shapes have the same bounds.

@@ -14,8 +14,8 @@
 
 namespace kds::collision {
 
-/// Points that have no hull that can be used. The message names what is wrong; `point` the one that is wrong, if one
-/// is.
+/// Points without a hull that can be used. The message names what is wrong; `point` is the number of the wrong point,
+/// if there is one.
 class InvalidHull : public std::invalid_argument {
  public:
   explicit InvalidHull(const std::string& what, std::optional<std::size_t> point = {})
@@ -36,8 +36,8 @@ struct HullEdge {
   friend bool operator==(const HullEdge&, const HullEdge&) = default;
 };
 
-/// The boundary of a convex polytope, all in indices of points. Of a segment or a point, which have none, it is what
-/// there is of it: an edge without faces, corners.
+/// The boundary of a convex polytope, all in indices of points. For a segment it is an edge without faces and two
+/// corners, for a point one corner.
 struct HullStructure {
   std::vector<std::uint32_t> corners;  ///< ascending
   std::vector<HullEdge> edges;         ///< ascending
@@ -54,9 +54,9 @@ struct HullStructure {
 /// Precondition: coordinates are finite, and products of three of them are no more than the greatest double.
 ///
 /// Method: point by point, all triangles that see it are replaced by those that it makes with the edges around them;
-/// triangles in one plane become faces in the end. What is in the plane of a triangle is not seen by it, so that no
-/// triangle is degenerate. Signs are those of determinants, in doubles with error bounds, then exactly.
-/// Cost: n times the number of triangles; 1 000 points on a ball take 32 ms.
+/// triangles in one plane become faces in the end. A point in the plane of a triangle does not see it, so that no
+/// triangle is degenerate. Signs are those of determinants, in doubles with error bounds, then exactly. Cost: n times
+/// the number of triangles; 1 000 points on a ball take 32 ms.
 HullStructure structure_of_hull(std::span<const Eigen::Vector3d> points);
 
 /// Whether the plane of a, b, c, counter-clockwise seen from outside, has d inside (-1), outside (1) or in it (0).

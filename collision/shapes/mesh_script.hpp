@@ -38,7 +38,7 @@ class MeshScript {
   /// The same triangles with other keyframes, and the same tree. Throws as the constructor does.
   MeshScript with(std::vector<Keyframe> keyframes) const { return {std::move(keyframes), form_}; }
   /// A script that goes on from where the vertices are at t, to other keyframes, each later than t; with none of them
-  /// they stand still from then on. What was before t is forgotten. Throws as the constructor does. Cost: O(n) a
+  /// they stand still from then on. Keyframes before t are left out. Throws as the constructor does. Cost: O(n) a
   /// keyframe, as the tree stays.
   MeshScript continued(double t, std::vector<Keyframe> to_come) const;
 

@@ -8,7 +8,7 @@
 
 namespace kds::collision::detail {
 
-/// With digits enough to know it by.
+/// With enough digits to identify the number.
 inline std::string number_text(double value) {
   std::ostringstream out;
   out << value;

@@ -12,8 +12,8 @@
 
 namespace kds::collision {
 
-/// A box turned in any direction, and what is in it. In floats, lengths in the tree's unit(): what is wanted of a box
-/// is to hold its triangles for certain, not to be tight to the last bit, and four floats are handled at a time.
+/// A box turned in any direction, and what is in it. In floats, lengths in the tree's unit(): a box has to hold its
+/// triangles for certain, but need not be tight to the last bit, and four floats are handled at a time.
 struct ObbNode {
   std::array<Lanes, 3> axes;  ///< row k: coordinate k of the directions of the three edges, orthonormal up to rounding
   Lanes centre;               ///< in the model's coordinates

@@ -41,10 +41,10 @@ class Polytope {
   const std::shared_ptr<const Mesh>& surface() const { return surface_; }
   /// A feature of the surface as one of the polytope: an edge between two triangles of a face is in that face.
   Feature feature_of(const Feature& of_surface) const;
-  /// Whether a corner or an edge is one of a face.
+  /// Whether a corner or an edge belongs to a face.
   bool is_part_of(const Feature& feature, const Feature& face) const;
 
-  /// The box that it is, if its corners are exactly those of one with edges along the axes.
+  /// The polytope as a box, if its corners are exactly those of a box with edges along the axes.
   const std::optional<AlignedBox>& box() const { return box_; }
 
   /// Radius of the ball about the origin that holds all corners, rounded up.
@@ -60,7 +60,7 @@ class Polytope {
   double bounding_radius_ = 0;
 };
 
-/// The mesh that the shape is, or the surface of the hull that it is. Precondition: it is one of the two.
+/// The mesh of a mesh shape, or the surface of a hull. Precondition: the shape is one of the two.
 MeshShape surface_of(const Shape& shape);
 
 /// Three corners of a face that span its plane, counter-clockwise seen from outside: of its list they are the first and

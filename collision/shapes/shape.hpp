@@ -24,8 +24,8 @@ struct RoundedCore;
 inline constexpr double smallest_size = 0x1p-205;     ///< 1.9e-62
 inline constexpr double largest_magnitude = 0x1p205;  ///< 5.1e61
 
-/// Of the edges of a mesh as it is scaled, in units of length: below, the axes that separate its triangles, products of
-/// up to three edges, are too short to be told from nothing (`vanishing_axis`).
+/// The least length of the edges of a mesh after scaling, in units of length: below it the axes that separate its
+/// triangles, products of up to three edges, are too short to be told from zero (`vanishing_axis`).
 inline constexpr double shortest_edge = 0x1p-110;  ///< 7.7e-34
 
 /// A ball about the body's centre. Radius > 0, in units of length.
@@ -63,8 +63,8 @@ struct BendingMesh {
 };
 
 /// All points x with normal . x <= offset, seen from the body's centre: a floor, a wall. The normal is of unit length
-/// up to 1e-6 (it is normalised); the offset is in units of length. Nothing of it bounds it, so its body is in no broad
-/// phase: it is tested with each body that it may collide with (world/unbounded.hpp).
+/// up to 1e-6 (it is normalised); the offset is in units of length. It has no bounds, so its body is in no broad phase:
+/// it is tested with each body that it may collide with (world/unbounded.hpp).
 struct HalfSpace {
   Eigen::Vector3d normal;
   double offset = 0;
@@ -89,7 +89,7 @@ const char* kind_name(const Shape& shape);
 /// radius twice, and its half length; of a hull and a compound 1, thrice; of a half-space infinity, thrice.
 Eigen::Vector3d measures(const Shape& shape);
 
-/// The radius of what looks alike from all sides; 0 of other shapes.
+/// The radius of a ball; 0 of other shapes.
 inline double ball_radius(const Shape& shape) {
   const auto* const ball = std::get_if<Sphere>(&shape);
   return ball ? ball->radius : 0;

@@ -28,7 +28,7 @@ struct RestingContact {
   bool alive = false;
   bool fresh = false;           ///< its speed of approach has still to be removed
   double ends = never;          ///< s, when nothing presses the two together from then on; `never` up to degree 2
-  double left_behind = -never;  ///< s, the epoch of motions whose rounding feigns a new contact
+  double left_behind = -never;  ///< s, the epoch of motions whose rounding looks like a new contact
 
   // In a cluster.
   double gap = 0;         ///< between the two at `since`, in units of length

@@ -90,7 +90,7 @@ auto without_turning(const Body<Degree>& a, const Body<Degree>& b, const Ask& as
 }
 
 /// The first double in (t, horizon] at which two bodies that overlap just after t do so more than they do then, by more
-/// than what roundings of their coordinates can feign, or `never`: their contact once they are made so much smaller.
+/// than roundings of their coordinates, or `never`. It is found as the contact of one body with the other made smaller.
 template <class Pair, int Degree>
 double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
   constexpr double roundings = 0x1p-46;
@@ -183,7 +183,7 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
 
 namespace {
 
-/// Whether two bodies that meet at t approach there, faster than roundings can feign.
+/// Whether two bodies that meet at t approach there, faster than by roundings.
 template <int Degree>
 bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
   const Contact contact = TurningContact<Degree>::contact_at(a, b, t, {});
@@ -239,8 +239,9 @@ ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<De
 }
 
 /// The first contact in [t0, horizon], or with `estimate` an earlier time, of bodies that doubles have not proved apart
-/// just after t0. What overlaps without a contact is looked at from the beginning of its motion, and so, up to
-/// `farthest`, as far ahead as that was before: then looks that follow each other cost twice what one does.
+/// just after t0. Bodies that overlap without a contact are followed from the beginning of their motions; so that
+/// repeated calls cost no more than twice as much as one, they are also followed equally far ahead of t0, up to
+/// `farthest`.
 template <int Degree>
 ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon, double farthest,
                              ContactMode mode, bool estimate) {
@@ -283,8 +284,8 @@ double TurningContact<Degree>::first_contact(const Body& a, const Body& b, doubl
   return contact_from<Degree>(a, b, t0, horizon, horizon, mode, false).time;
 }
 
-/// What exact tests would look for after a while is mostly not needed: motions change before. So of bodies that have
-/// just met only that is proved.
+/// Exact tests far ahead are mostly not needed, since the motions change before. So for bodies that have just met it is
+/// only proved that they stay apart for a while.
 template <int Degree>
 ContactEstimate TurningContact<Degree>::estimated_contact(const Body& a, const Body& b, double t0, double horizon,
                                                           double farthest, ContactMode mode, bool earlier) {

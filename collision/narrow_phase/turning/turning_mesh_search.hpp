@@ -328,7 +328,7 @@ bool TurningMeshSearch<Degree, Side>::Front::counts(NodePair nodes) const {
 }
 
 /// When a pair that penetrates and does not approach is to be looked at again: just after it has parted, or when it is
-/// deeper by more than what roundings of coordinates can feign.
+/// deeper by more than roundings of coordinates.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
   const double t = view.time;

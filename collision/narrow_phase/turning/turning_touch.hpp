@@ -26,7 +26,7 @@ struct TurningTouch {
   Eigen::Vector3d point;   ///< from the origin of a
   Eigen::Vector3d normal;  ///< unit, from a to b
   Feature feature_a, feature_b;
-  double approach;  ///< how much faster they approach there than roundings can feign; not above zero if they do not
+  double approach;  ///< how fast they approach there, less the effect of roundings; not above zero if they do not
 };
 
 namespace detail {
@@ -103,8 +103,8 @@ double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& norma
 /// middle of what they share, or where that does not approach but another does, the corner of it that approaches
 /// fastest.
 ///
-/// They approach if they do so along all directions in which they are no deeper than roundings: what slides on a face,
-/// in it by a rounding, meets walls below that face from inside, but is not stopped by them.
+/// They approach if they do so along all directions in which they are no deeper than roundings. A body that slides on a
+/// face, and is in it by a rounding, meets the walls below that face from inside: these must not stop it.
 template <int Degree, class HullB, class Side>
 TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair& a, std::uint32_t leaf_a, const Side& b,
                       std::uint32_t leaf_b, const TurningView<Degree>& view, const PointRates<Degree>& rates,

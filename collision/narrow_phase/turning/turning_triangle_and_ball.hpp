@@ -95,7 +95,7 @@ class TurningTriangleAndBall {
     // The direction from the nearest point, with which it turns.
     const VectorJet n = turning(apart / distance, view.spin_a);
     const double stretch = view.stretch(hull_.radius + radius_, (horizon - view.time) * (1 + 0x1p-40));
-    const TurningBounds bounds(view, view.rate_a, 0, 0, stretch);  // the ball's own spin is nothing to it
+    const TurningBounds bounds(view, view.rate_a, 0, 0, stretch);  // the spin of the ball does not matter
     double farthest = -never;
     for (const Eigen::Vector3d& x : seen.corners) farthest = std::max(farthest, dot(n.value, x));
     Jet f = dot(n, view.way);

@@ -51,7 +51,7 @@ class TurningTriangleAndCapsule : public TurningRoundedPolytopes<Degree> {
   static int shallow_plane(double, double) { return -1; }
   static double holds_until(int, double, double t, double) { return t; }
 
-  /// The same pair with a smaller radius; one that is hardly there if nothing of it is left.
+  /// The same pair with a smaller radius, but at least 2^-20 of the radius.
   TurningTriangleAndCapsule with_slack(double slack) const {
     TurningTriangleAndCapsule pair = *this;
     pair.set_radius(std::max(this->radius() - slack, 0x1p-20 * this->radius()));
