@@ -422,12 +422,13 @@ void Engine<Motion>::ring() {
   tell([&](Listener& listener) { listener.timer(world_, timer); });
 }
 
-/// Callers have changed something, so the time until the next event has to be searched again: after the next step, which
-/// finds out what follows now. Edits by callbacks are counted, so that a run ends.
+/// Callers have changed something, so the time until the next event has to be searched again: where bodies have changed
+/// after the next step, which finds out what follows now. Edits by callbacks are counted, so that a run ends.
 template <class Motion>
-void Engine<Motion>::count_edit() {
+void Engine<Motion>::count_edit(bool of_bodies) {
   idle_until_ = -never;
-  next_time_ = stepping_ ? -never : callers_now_;
+  const bool due_now = of_bodies || next_time_ == callers_now_;
+  next_time_ = due_now && !stepping_ ? callers_now_ : -never;
   idle_for_ever_ = false;
   if (stepping_)
     edits_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));

@@ -217,7 +217,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void go_back(double t);
   void start_pieces();
   void ring();
-  void count_edit();
+  void count_edit(bool of_bodies = true);
 
   // guards.cpp: what may be called when, and the state after an exception
   [[noreturn]] void refuse(const char* function) const;

@@ -127,14 +127,14 @@ TimerId Engine<Motion>::set_timer(double t) {
     throw std::invalid_argument("World::set_timer: " + std::to_string(t) + " is not a finite time from now on (" +
                                 std::to_string(clock_.now) + ")");
   }
-  count_edit();
+  count_edit(false);
   return timers_.set(t);
 }
 
 template <class Motion>
 bool Engine<Motion>::cancel_timer(TimerId timer) {
   require_editable("World::cancel_timer");
-  count_edit();
+  count_edit(false);
   return timers_.cancel(timer);
 }
 
