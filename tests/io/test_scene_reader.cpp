@@ -311,7 +311,8 @@ TEST_CASE("scene reader: keys that may be left out") {
 TEST_CASE("scene reader: a half-space may reach through reflecting walls, which it never meets") {
   const Scene scene = parse_scene(R"({"scene": 1, "end_time": 2, "response": "elastic",
       "domain": {"min": [-5, -5, -5], "max": [5, 5, 5], "walls": "reflect"},
-      "bodies": [{"name": "floor", "shape": {"half_space": {"normal": [0, 0, 1]}}, "fixed": true,
+      "bodies": [{"name": "floor", "shape": {"half_space": {"normal": [0, 0, 1], "offset": 0}},
+                  "fixed": true,
                   "motion": [{"start": 0, "position": [[0, 0, 0]]}]}]})",
                                   "scene.json");
   REQUIRE(scene.bodies.size() == 1);
