@@ -5,6 +5,7 @@
 #include "structures/spanning_tree.hpp"
 #include "structures/spatial_triangulation.hpp"
 #include "tests/structures/random_values.hpp"
+#include "tests/structures/tree_paths.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -66,26 +67,7 @@ int check_tree(const SpanningTreeRule<Path, Delaunay>& rule, const MovingSet<Pat
   if (rule.inner().flat()) return !edges.empty();
   const std::vector<Id> vertices = vertices_of(rule.inner(), set);
   if (edges.size() + 1 != vertices.size()) return 1;
-  int wrong = 0;
-  std::map<Id, std::vector<Id>> neighbours;
-  for (const auto& [a, b] : edges) neighbours[a].push_back(b), neighbours[b].push_back(a);
-  for (const Id from : vertices) {
-    std::map<Id, std::array<Id, 2>> longest{{from, {from, from}}};  // of the edges on the path there
-    std::vector<Id> open{from};
-    while (!open.empty()) {
-      const Id at = open.back();
-      open.pop_back();
-      for (const Id to : neighbours[at]) {
-        if (longest.contains(to)) continue;
-        const auto [a, b] = longest[at];
-        longest[to] = a == b || compare(set, now, a, b, at, to) > 0 ? std::array{at, to} : std::array{a, b};
-        wrong += compare(set, now, from, to, longest[to][0], longest[to][1]) > 0;
-        open.push_back(to);
-      }
-    }
-    wrong += longest.size() != vertices.size();
-  }
-  return wrong;
+  return tests::wrong_paths(edges, vertices, [&](Id a, Id b, Id c, Id d) { return compare(set, now, c, d, a, b) > 0; });
 }
 
 int check_pair(const ClosestPairRule<Path, Delaunay>& rule, const MovingSet<Path>& set, double now) {

@@ -4,6 +4,7 @@
 #include "tests/structures/exact_plane.hpp"
 #include "tests/structures/random_values.hpp"
 #include "tests/structures/told_edges.hpp"
+#include "tests/structures/tree_paths.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -35,26 +36,8 @@ int check_tree(const SpanningTreeRule<PlaneMotion<Degree>>& rule, const MovingSe
   const auto edges = rule.edges();
   if (rule.inner().flat()) return !edges.empty();
   if (edges.size() + 1 != vertices.size()) return 1;
-  int wrong = 0;
-  std::map<Id, std::vector<Id>> neighbours;
-  for (const auto& [a, b] : edges) neighbours[a].push_back(b), neighbours[b].push_back(a);
-  for (const Id from : vertices) {
-    std::map<Id, std::array<Id, 2>> longest{{from, {from, from}}};  // of the edges on the path there
-    std::vector<Id> open{from};
-    while (!open.empty()) {
-      const Id at = open.back();
-      open.pop_back();
-      for (const Id to : neighbours[at]) {
-        if (longest.contains(to)) continue;
-        const auto [a, b] = longest[at];
-        longest[to] = plane.compare_distances(at, to, a, b) > 0 ? std::array{at, to} : std::array{a, b};
-        wrong += plane.compare_distances(longest[to][0], longest[to][1], from, to) > 0;
-        open.push_back(to);
-      }
-    }
-    wrong += longest.size() != vertices.size();
-  }
-  return wrong;
+  return tests::wrong_paths(edges, vertices,
+                            [&](Id a, Id b, Id c, Id d) { return plane.compare_distances(a, b, c, d) > 0; });
 }
 
 /// The tree by what it tells.
