@@ -85,18 +85,13 @@ std::filesystem::path past_dangling_links(const std::filesystem::path& path) {
   return file;
 }
 
-namespace {
-
-/// Where it leads if it is a symbolic link.
-std::filesystem::path resolved(const std::string& path) {
+std::filesystem::path resolved(const std::filesystem::path& path) {
   const std::filesystem::path target = past_dangling_links(path);
   std::error_code error;
   if (!std::filesystem::is_symlink(target, error)) return target;
   const std::filesystem::path end = std::filesystem::canonical(target, error);
   return error ? target : end;
 }
-
-}  // namespace
 
 std::filesystem::path unfinished_path(const std::string& path) { return resolved(path).string() + ".unfinished"; }
 

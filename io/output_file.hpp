@@ -20,6 +20,9 @@ struct OutputError : std::runtime_error {
 /// Where `path` leads if it is a symbolic link to a file that is not there yet; else `path`.
 std::filesystem::path past_dangling_links(const std::filesystem::path& path);
 
+/// Where `path` leads if it is a symbolic link, to a file that is there or not; else `path`.
+std::filesystem::path resolved(const std::filesystem::path& path);
+
 /// Where a file is until it is whole that takes several runs to write: `path` with ".unfinished" after it.
 std::filesystem::path unfinished_path(const std::string& path);
 /// Where that is which a run has written that is to be gone on with: there, or in the place of the whole file, if the

@@ -1,6 +1,7 @@
 #include "examples/kds-collide/file_names.hpp"
 
 #include "io/output_file.hpp"
+#include "io/run_lock.hpp"
 #include "io/vtk.hpp"
 
 #include <filesystem>
@@ -76,6 +77,7 @@ std::vector<FileName> files_written(const Arguments& arguments) {
   }
   if (!in_parts) return files;
   add("--checkpoint", kds::io::unfinished_path(arguments.checkpoint));
+  add("--checkpoint", kds::io::lock_path(arguments.checkpoint));
   for (const char* const turn : {".a", ".b"}) {
     for (const char* const ending : {"", ".unfinished"}) {
       files.push_back({"--checkpoint", arguments.checkpoint + turn, true, ending});

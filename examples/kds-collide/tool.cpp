@@ -10,6 +10,7 @@
 #include "io/one_line.hpp"
 #include "io/output_file.hpp"
 #include "io/replay.hpp"
+#include "io/run_lock.hpp"
 #include "io/scene_reader.hpp"
 #include "io/stats_json.hpp"
 #include "io/vtk.hpp"
@@ -335,6 +336,7 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   }
 
   const std::uint64_t random = team.of_first(std::uint64_t{std::random_device()()} << 32 | std::random_device()());
+  std::optional<RunLock> lock;  // outlives what writes
   std::optional<Simulation> simulation;
   Failure failure;
   const auto begin = [&](const auto& call) {
@@ -344,16 +346,33 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
     check(arguments);
     simulation.emplace(arguments, team);
   });
+  begin([&] {
+    if (!arguments.checkpoint.empty()) lock.emplace(arguments.checkpoint, team.rank());
+  });
+  begin([&] {
+    if (lock) lock->share();
+  });
   begin([&] { simulation->open(random); });
   begin([&] { simulation->open_checkpoints(); });
-  if (failure.code != done) return end_with(failure, is_first);
+  // In all processes, as nothing is left to be written.
+  const auto unlock = [&] {
+    simulation.reset();
+    team.of_first(true);
+    if (lock) lock->remove();
+  };
+  if (failure.code != done) {
+    unlock();
+    return end_with(failure, is_first);
+  }
   failure = attempt(name, arguments, [&] {
     simulation->run();
     simulation->close();
     // All outputs, of all processes, are whole before one appears: none comes here before the others do.
     team.of_first(true);
     simulation->commit();
+    unlock();
   });
+  if (failure.code != done && team.count() == 1) unlock();
   if (failure.code != done && team.count() > 1) {
     failure.line = "process " + std::to_string(team.rank()) + ": " + failure.line;
     simulation.reset();  // removes temporary files

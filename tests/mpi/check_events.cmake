@@ -79,7 +79,8 @@ foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_T
 endforeach()
 
 # The same of a run whose processes are killed while they write or run, again and again.
-execute_process(COMMAND timeout 2 ${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events
+# Told to end twice, mpirun would not wait for its processes, hence --foreground.
+execute_process(COMMAND timeout --foreground 2 ${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events
   killed.csv --checkpoint killed.state --checkpoint-every 0.02 --quiet WORKING_DIRECTORY "${FOLDER}" OUTPUT_QUIET
   ERROR_QUIET)
 if(EXISTS "${FOLDER}/killed.csv.unfinished" AND EXISTS "${FOLDER}/killed.state")
