@@ -5,6 +5,7 @@
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/in_parts.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs.hpp"
@@ -73,6 +74,16 @@ bool only_touching(const MovingShape<Motion>& a, const MovingShape<Motion>& b, d
   const double size =
       largest(a.motion) + largest(b.motion) + std::min(a.shape.bounding_radius, b.shape.bounding_radius);
   double apart = touch_rounding * size;
+  // Where there is a mesh, what is nearer than its margin is in contact.
+  if constexpr (!turns<Motion>) {
+    const bool exact = !has_mesh(a.shape.shape) && !has_mesh(b.shape.shape);
+    if (!exact && !unbounded(a.shape.shape) && !unbounded(b.shape.shape)) {
+      const auto share = [](const MovingShape<Motion>& body, const Motion& place) {
+        return MeshClearance<Motion::degree>(place, body.shape.bounding_radius).share()[0];
+      };
+      apart = std::max(apart, 2 * (share(a, place_a) + share(b, standing(b.motion, t, Vector3d::Zero()))));
+    }
+  }
   // A mesh that bends is in contact within its tolerance already; and a little more is not much of an overlap.
   for (const PlacedShape* const shape : {&a.shape, &b.shape}) {
     if (bends(shape->shape)) apart = std::max(apart, 1.25 * bending_tolerance * shape->bounding_radius);

@@ -56,7 +56,9 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
   const bool bending = bends(a, b);
   double approach = -dot(n, rates.velocity(contact.point) + surface_velocity(a, b, contact));
-  result.approach = approach > 0 || bending;
+  // A ball that was placed on a floor and is pulled down meets it without approaching it.
+  if (std::abs(approach) <= rates.noise(contact.point)) approach = std::max(approach, 0.0);
+  result.approach = approach >= 0 || bending;
   if (!result.approach) return result;
   // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
