@@ -121,6 +121,48 @@ void check_stays(const std::string& floor_name, const std::pair<Shape, Vector3d>
   CHECK(log.contacts < 200);
 }
 
+/// Three bodies above each other, which lie on each other up to roundings. Balls may roll off, but nothing sinks in.
+template <class Motion>
+void check_stack(const std::string& floor_name, const std::pair<Shape, Vector3d>& floor, const Shape& low,
+                 const Shape& high, double radius, const Vector3d& origin) {
+  INFO(floor_name << ", " << kind_name(low) << ", " << kind_name(high) << " and " << kind_name(low) << " of radius "
+                  << radius << " at " << origin.transpose());
+  using World = BasicWorld<Motion>;
+  Log<Motion> log;
+  World world({.response = Response::elastic}, &log);
+  const auto add = [&](const Shape& shape, const Motion& motion, bool fixed) {
+    typename World::Description body{.shape = shape, .motion = {motion}, .fixed = fixed, .restitution = 0.3};
+    if constexpr (std::is_same_v<Motion, RigidMotion<2>>) body.friction = 0.4;
+    return world.add_body(body);
+  };
+  add(floor.first, standing<Motion>(origin + floor.second), true);
+  std::vector<BodyId> bodies;
+  for (int i = 0; i < 3; ++i) {
+    const Vector3d place = origin + Vector3d(0.3, 0.4, (2 * i + 1) * radius);
+    bodies.push_back(add(i == 1 ? high : low, falling<Motion>(place, 0), false));
+  }
+  world.advance_to(1);
+  CHECK(log.let_through == 0);
+  for (const BodyId body : bodies) {
+    CHECK(path_of(world.motion(body)).position(1)[2] - origin[2] > (1 - 1e-3) * radius);
+  }
+}
+
+template <class Motion>
+void check_all_stacks() {
+  for (const auto& [floor_name, floor] : floors()) {
+    for (const double radius : {0.5, 0.028}) {
+      for (const auto& [low_name, low] : solids(radius)) {
+        for (const auto& [high_name, high] : solids(radius)) {
+          // Equal meshes exactly above each other touch and do not meet (docs/turning.md).
+          if (low_name == "mesh" || high_name == "mesh" || low_name == "capsule" || high_name == "capsule") continue;
+          check_stack<Motion>(floor_name, floor, low, high, radius, Vector3d(0.1, 0.2, 0));
+        }
+      }
+    }
+  }
+}
+
 template <class Motion>
 void check_all_stay() {
   for (const auto& [floor_name, floor] : floors()) {
@@ -138,5 +180,9 @@ void check_all_stay() {
 TEST_CASE("Bodies placed on a floor stay on it", "[world]") { check_all_stay<PointMotion<2>>(); }
 
 TEST_CASE("Bodies that can turn, placed on a floor, stay on it", "[world]") { check_all_stay<RigidMotion<2>>(); }
+
+TEST_CASE("Bodies stacked on a floor stay above it", "[world]") { check_all_stacks<PointMotion<2>>(); }
+
+TEST_CASE("Bodies that can turn, stacked on a floor, stay above it", "[world]") { check_all_stacks<RigidMotion<2>>(); }
 
 }  // namespace test_placed_on_floors

@@ -23,7 +23,7 @@ auto with_search(const MeshBody<Degree>& a, const MeshBody<Degree>& b, const Ask
   if (const auto* const other = std::get_if<MeshShape>(&b.shape.shape)) return with(MeshOfPair(*other));
   if (std::holds_alternative<ConvexHull>(b.shape.shape)) {
     const MeshShape surface = surface_of(b.shape.shape);
-    return with(MeshOfPair(surface));
+    return with(MeshOfPair(surface, true));
   }
   if (std::holds_alternative<Capsule>(b.shape.shape)) return with(CapsuleOfPair(b.shape.shape));
   if (const auto* const box = std::get_if<Box>(&b.shape.shape)) return with(BoxOfPair(*box));

@@ -27,8 +27,12 @@ inline Eigen::Vector3d scaled_vertex(const MeshShape& shape, std::uint32_t verte
 /// A mesh with its tree.
 class MeshOfPair {
  public:
-  explicit MeshOfPair(const MeshShape& shape)
-      : shape_(shape), nodes_(shape.mesh->tree().nodes()), unit_(shape.mesh->tree().unit() * shape.scale) {}
+  /// `solid`: it is the surface of a solid, whose triangles are counter-clockwise seen from outside.
+  explicit MeshOfPair(const MeshShape& shape, bool solid = false)
+      : shape_(shape),
+        solid_(solid),
+        nodes_(shape.mesh->tree().nodes()),
+        unit_(shape.mesh->tree().unit() * shape.scale) {}
 
   const ObbNode& node(std::uint32_t i) const { return nodes_[i]; }
   NodeUnits units() const {
@@ -36,6 +40,7 @@ class MeshOfPair {
     const double reach = norm(Eigen::Vector3d(centre[0], centre[1], centre[2])) + static_cast<double>(nodes_[0].radius);
     return {unit_, 0, unit_ * reach * (1 + 0x1p-40)};
   }
+  bool solid() const { return solid_; }
   bool is_leaf(std::uint32_t i) const { return nodes_[i].is_leaf(); }
   std::uint32_t first_child(std::uint32_t i) const { return nodes_[i].first; }
   double radius(std::uint32_t i) const { return unit_ * static_cast<double>(nodes_[i].radius); }
@@ -60,6 +65,7 @@ class MeshOfPair {
 
  private:
   const MeshShape& shape_;
+  bool solid_;
   std::span<const ObbNode> nodes_;
   double unit_;
 };

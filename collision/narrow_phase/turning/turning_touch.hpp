@@ -17,6 +17,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace kds::collision {
@@ -97,11 +98,23 @@ double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& norma
   return -dot(normal, rates.velocity(x)) - rates.noise(x);
 }
 
+/// A direction out of a solid whose surface a triangle is of; zero for others.
+template <class Side, class Points>
+Eigen::Vector3d outward(const Side& side, const Points& points) {
+  if constexpr (std::is_same_v<Side, MeshOfPair>) {
+    if (side.solid()) return cross(points[1] - points[0], points[2] - points[0]);
+  }
+  return Eigen::Vector3d::Zero();
+}
+
 }  // namespace detail
 
 /// Of a triangle and a triangle or a box: along the direction in which they are the least deep in each other. The
 /// middle of what they share, or where that does not approach but another does, the corner of it that approaches
 /// fastest.
+///
+/// A triangle of the surface of a solid is not pushed out of that solid: a face that lies in a plane up to roundings
+/// may be less deep in it on the far side.
 ///
 /// They approach if they do so along all directions in which they are no deeper than roundings. A body that slides on a
 /// face, and is in it by a rounding, meets the walls below that face from inside: these must not stop it.
@@ -123,10 +136,20 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair&
     }
     return touch;
   };
-  const auto widest = pair.widest(seen);
+  const Eigen::Vector3d out_of_b = detail::outward(b, seen.b);
+  const double least = parallel_sine * norm(out_of_b);
+  const auto every_gap = [&](const auto& visit) {
+    pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
+      if (!(dot(way.normal, out_of_b) > least)) visit(way);
+    });
+  };
+  typename Hulls::Widest widest;
+  every_gap([&](const typename Hulls::Widest& way) {
+    if (way.gap > widest.gap) widest = way;
+  });
   TurningTouch touch = along(widest.normal);
   const double roundings = pair.roundings(view);
-  pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
+  every_gap([&](const typename Hulls::Widest& way) {
     if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0)) return;
     touch.approach = std::min(touch.approach, along(way.normal).approach);
   });
