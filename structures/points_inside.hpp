@@ -20,7 +20,7 @@ namespace kds::structures {
 /// A point has entered a region or left it. One that stays inside while it or the region gets another motion leaves and
 /// enters again, in one call.
 struct InsideChange {
-  enum class What : std::uint8_t { entered, left };
+  enum class What : std::uint8_t { entered, left };  ///< on the border is inside
   What what;
   Id region, point;
 
