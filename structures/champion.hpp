@@ -15,6 +15,14 @@
 
 namespace kds::structures {
 
+/// What a ChampionRule maintains has become another, or an element that it is made of has got a new motion.
+template <class Answer>
+struct AnswerChange {
+  Answer answer;
+
+  friend bool operator==(const AnswerChange&, const AnswerChange&) = default;
+};
+
 /// A rule that stands on another and keeps the best of candidates that come and go in that: a tournament, each match of
 /// which has a certificate that its loser is not better than its winner. `Rule`, which derives from it, says what the
 /// candidates are, in terms of inner():
@@ -25,7 +33,8 @@ namespace kds::structures {
 ///     ids(candidate) const               the elements that it is made of, an array of ids
 ///     find_answer() const -> Answer      what is maintained: champion() in terms of elements
 ///
-/// Events are external if they change the answer. Slot: the number of a match.
+/// Events are external if they change the answer. It is reported (AnswerChange), so that other rules may stand on this.
+/// Slot: the number of a match.
 ///
 /// Cost: O(log n) certificates for an event, and for each candidate that the inner rule changes; O(n) for n candidates
 /// (compact), and each is in O(log n) certificates (local if an element is in few candidates).
@@ -33,7 +42,8 @@ template <class Rule, class Inner, class Better, class Answer = std::optional<st
 class ChampionRule : public StandsOn<Inner> {
  public:
   using Element = typename StandsOn<Inner>::Element;
-  using Pen = RepairOf<ChampionRule>;
+  using Change = AnswerChange<Answer>;
+  using Pen = Repair<Element, Change>;
   using Candidate = Bracket::Entrant;
   static constexpr Candidate none = Bracket::nobody;
 
@@ -57,15 +67,18 @@ class ChampionRule : public StandsOn<Inner> {
 
   Effect repair(Slot match, Pen& repair) {
     bracket_.climb(match, Bracket::nobody, beats(repair), marks(repair));
-    return renew_answer();
+    return renew_answer(repair);
   }
   Effect follow(std::span<const typename StandsOn<Inner>::Heard> changes, Pen& repair) {
     candidates_.clear();
     for (const auto& change : changes) candidates_.push_back(rule().candidate(change));
     bracket_.update(
         candidates_, [this](Candidate c) { return rule().takes_part(c); }, beats(repair), marks(repair));
-    return renew_answer();
+    const bool moved = std::find(candidates_.begin(), candidates_.end(), champion()) != candidates_.end();
+    return renew_answer(repair, moved);
   }
+
+  std::vector<Change> changes_from_nothing() const { return {{answer_}}; }
 
   void audit(const MovingSet<Element>& /*elements*/, double /*now*/) const {
     bracket_.audit(Rule::name);
@@ -83,18 +96,19 @@ class ChampionRule : public StandsOn<Inner> {
 
  protected:
   const Answer& answer() const { return answer_; }
-  /// To be called where the answer changes and champion() does not.
-  Effect renew_answer() {
+  /// To be called where the answer changes and champion() does not. `moved`: an element of the answer has a new motion.
+  Effect renew_answer(Pen& repair, bool moved = false) {
     const Answer before = std::exchange(answer_, rule().find_answer());
-    return answer_ == before ? Effect::internal : Effect::external;
+    const bool same = answer_ == before;
+    if (!same || moved) repair.report({answer_});
+    return same ? Effect::internal : Effect::external;
   }
 
  private:
   const Rule& rule() const { return static_cast<const Rule&>(*this); }
   auto beats(const Pen& repair) const {
-    return [this, &repair](Candidate i, Candidate j) {
-      return repair.sign(rule().better(i, j, repair.elements())) >= 0;
-    };
+    return
+        [this, &repair](Candidate i, Candidate j) { return repair.sign(rule().better(i, j, repair.elements())) >= 0; };
   }
   static auto marks(Pen& repair) {
     return [&repair](std::size_t match) { repair.certify(static_cast<Slot>(match)); };
