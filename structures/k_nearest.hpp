@@ -3,6 +3,7 @@
 
 #include "certificates/plane_certificates.hpp"
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "structures/nearest_change.hpp"
 #include "structures/voronoi_cells.hpp"
 
@@ -141,7 +142,7 @@ class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
   std::size_t count_;
   std::vector<List> lists_;  ///< by vertex
   std::vector<Pair> pairs_;
-  std::vector<Slot> free_;  ///< numbers of pairs that do not exist any more
+  FreeNumbers free_;  ///< numbers of pairs that do not exist any more
   std::vector<Id> nowhere_, looked_at_;
 };
 
@@ -202,18 +203,15 @@ bool KNearestRule<Path>::look(Id id, bool all, Pen& repair) {
     if (goes || all) repair.certify(slot);
     if (!goes) return pairs.erase(same), false;
     pairs_[slot] = {};
-    free_.push_back(slot);
+    free_.give_back(slot);
     return true;
   });
   for (const Pair& pair : pairs) {
-    if (free_.empty()) {
-      free_.push_back(static_cast<Slot>(pairs_.size()));
-      pairs_.emplace_back();
-    }
-    list.pairs.push_back(free_.back());
-    pairs_[free_.back()] = pair;
-    repair.certify(free_.back());
-    free_.pop_back();
+    const Slot slot = free_.take(pairs_.size());
+    if (slot == pairs_.size()) pairs_.emplace_back();
+    pairs_[slot] = pair;
+    list.pairs.push_back(slot);
+    repair.certify(slot);
   }
   if (std::exchange(list.nearest, nearest) == nearest) return false;
   repair.report({id});
