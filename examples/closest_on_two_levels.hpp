@@ -15,9 +15,9 @@
 namespace kds::examples {
 
 using Line = certificates::PlaneMotion<1>;
-using Parabola = certificates::PlaneMotion<2>;
+using Curve = certificates::PlaneMotion<2>;
 using Lower = structures::ClosestPairRule<Line>;
-using Upper = structures::ClosestPairRule<Parabola>;
+using Upper = structures::ClosestPairRule<Curve>;
 
 /// |b - a|^2 <= |d - c|^2, for pairs on paths of two types.
 template <class Path, class OtherPath>
@@ -35,7 +35,7 @@ struct NotFarther {
     return apart(c, d) - apart(a, b);
   }
 };
-using CloserOnLevels = std::variant<NotFarther<Line, Parabola>, NotFarther<Parabola, Line>>;
+using CloserOnLevels = std::variant<NotFarther<Line, Curve>, NotFarther<Curve, Line>>;
 
 /// Two points, the lower id first, and their level: 0 or 1.
 struct PairOnLevel {
@@ -51,8 +51,8 @@ struct PairOnLevel {
 ///
 ///     Kinetic<ClosestOnTwoLevels> closest({closest_on_lower, closest_on_upper, upper_points}, now);
 class ClosestOnTwoLevels
-    : public structures::ChampionRule<ClosestOnTwoLevels, StandsOn<Lower, Upper, ElementsRule<Parabola>>,
-                                      CloserOnLevels, std::optional<PairOnLevel>> {
+    : public structures::ChampionRule<ClosestOnTwoLevels, StandsOn<Lower, Upper, ElementsRule<Curve>>, CloserOnLevels,
+                                      std::optional<PairOnLevel>> {
  public:
   static constexpr const char* name = "ClosestOnTwoLevels";
 
@@ -68,11 +68,11 @@ class ClosestOnTwoLevels
     return level == 0 ? std::vector<Id>(pair(0)->begin(), pair(0)->end()) : std::vector<Id>();
   }
   CloserOnLevels better(Candidate level, Candidate /*other*/, const MovingSet<Line>& lower) const {
-    const ElementsRule<Parabola>& upper = inner(From<2>());
+    const ElementsRule<Curve>& upper = inner(From<2>());
     const auto [a, b] = *pair(0);
     const auto [c, d] = *pair(1);
-    if (level == 0) return NotFarther<Line, Parabola>{lower[a], lower[b], upper[c], upper[d]};
-    return NotFarther<Parabola, Line>{upper[c], upper[d], lower[a], lower[b]};
+    if (level == 0) return NotFarther<Line, Curve>{lower[a], lower[b], upper[c], upper[d]};
+    return NotFarther<Curve, Line>{upper[c], upper[d], lower[a], lower[b]};
   }
   std::optional<PairOnLevel> find_answer() const {
     return champion() == none ? std::nullopt : std::optional(PairOnLevel{champion(), *pair(champion())});

@@ -98,12 +98,12 @@ void add_distances(const MovingSet<certificates::PlaneMotion<Degree>>& set, std:
 
 struct TwoLevels {
   MovingSet<examples::Line> lower{};
-  MovingSet<examples::Parabola> upper{};
+  MovingSet<examples::Curve> upper{};
   Kinetic<structures::DelaunayRule<examples::Line>> lower_triangles{lower, 0};
-  Kinetic<structures::DelaunayRule<examples::Parabola>> upper_triangles{upper, 0};
+  Kinetic<structures::DelaunayRule<examples::Curve>> upper_triangles{upper, 0};
   Kinetic<examples::Lower> lower_pair{lower_triangles, 0};
   Kinetic<examples::Upper> upper_pair{upper_triangles, 0};
-  Kinetic<ElementsRule<examples::Parabola>> upper_points{upper, 0};
+  Kinetic<ElementsRule<examples::Curve>> upper_points{upper, 0};
   Kinetic<ClosestOnTwoLevels> closest{{lower_pair, upper_pair, upper_points}, 0};
 
   /// Whether no two points on one level are closer; and there are two, unless none are known.
