@@ -22,7 +22,7 @@ namespace kds::certificates {
 /// the structure to find out.
 struct Arrival {
   static constexpr int degree = 1;
-  enum class At : std::uint8_t { line, tip, beginning };
+  enum class At : std::uint8_t { line, tip, beginning };  ///< of the track: where the end comes to
 
   PlaneMotion<1> end, track;
   At at;

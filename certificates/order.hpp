@@ -43,6 +43,7 @@ struct Order {
 
   bool is_negative_of(const Order& other) const { return &lower == &other.upper && &upper == &other.lower; }
 
+  /// A value in doubles, and more than its error.
   struct RoughValue {
     double value;
     double margin;

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
@@ -51,6 +52,15 @@ struct NoPairListener {
   void pair_ended(Id /*a*/, Id /*b*/, double /*t*/) {}
 };
 
+/// Two elements have come to be a pair or are none any more, or one of them has got a new motion.
+struct PairChange {
+  enum class What : std::uint8_t { came, went, moved };  ///< moved: one of the two has a new motion
+  What what;
+  Id a, b;  ///< a < b
+
+  friend bool operator==(const PairChange&, const PairChange&) = default;
+};
+
 /// Keeps a bounding-volume tree over moving elements, and the pairs whose boxes in it overlap.
 ///
 /// An element, a point or a MovingBox (whose paths have axis(d), or are values where Dimension is 1), is in a *fat box*
@@ -68,12 +78,15 @@ struct NoPairListener {
 /// Law: the pairs are those whose fat boxes overlap, and so include all whose elements do (`meet()`). Boxes that touch
 /// overlap. Reports alternate for each pair, beginning with pair_began, at the times at which fat boxes change; for one
 /// change the pairs that end come first, and both lists are in the order of the other element's id. Loading a snapshot
-/// reports nothing.
+/// reports nothing. Rules that stand on this one are told of the same pairs (PairChange): one of those that really
+/// meet, say, which needs certificates for these only.
 template <MovingElement E, std::size_t Dimension, class PairListener = NoPairListener>
 class AabbTreeRule {
  public:
   using Element = E;
   using Box = TreeBox<Dimension>;
+  using Change = PairChange;
+  using Pen = Repair<E, Change>;
   static constexpr const char* name = "AabbTree";
 
   /// Throws std::invalid_argument for options that are negative, not finite or both zero: fat boxes must be fat.
@@ -113,21 +126,31 @@ class AabbTreeRule {
   }
   std::array<Id, 1> members(Slot slot) const { return {place(slot).id}; }
 
-  Effect repair(Slot slot, Repair<E>& repair) {
+  Effect repair(Slot slot, Pen& repair) {
     const Id id = place(slot).id;
     return renew(id, box_until_renewal(repair[id], repair.now()), repair) ? Effect::external : Effect::internal;
   }
-  void insert(Id id, Repair<E>& repair) { renew(id, box_until_renewal(repair[id], repair.now()), repair); }
-  void remove(Id id, Repair<E>& repair) {
+  void insert(Id id, Pen& repair) { renew(id, box_until_renewal(repair[id], repair.now()), repair); }
+  void remove(Id id, Pen& repair) {
     tree_.remove(id);
-    set_partners(id, {}, repair.now());
+    set_partners(id, {}, repair);
     for (Slot i = 0; i < sides; ++i) repair.retire(id * sides + i);
   }
   /// The element keeps its fat box if that contains it for as long as a new one would have to.
-  void change(Id id, Repair<E>& repair) {
+  void change(Id id, Pen& repair) {
     const Box needed = box_until_renewal(repair[id], repair.now());
-    if (!tree_.box(id).contains(needed)) return void(renew(id, needed, repair));
-    certify(id, repair);
+    if (tree_.box(id).contains(needed)) {
+      certify(id, repair);
+    } else {
+      renew(id, needed, repair);
+    }
+    for (const Id other : partners_[id]) repair.report(pair(PairChange::What::moved, id, other));
+  }
+
+  std::vector<PairChange> changes_from_nothing() const {
+    std::vector<PairChange> changes;
+    for (const auto& [a, b] : pairs()) changes.push_back({PairChange::What::came, a, b});
+    return changes;
   }
 
   void audit(const MovingSet<E>& elements, double now) const;
@@ -182,11 +205,12 @@ class AabbTreeRule {
     return box;
   }
 
-  void certify(Id id, Repair<E>& repair) const {
+  static PairChange pair(PairChange::What what, Id a, Id b) { return {what, std::min(a, b), std::max(a, b)}; }
+  void certify(Id id, Pen& repair) const {
     for (Slot i = 0; i < sides; ++i) repair.certify(id * sides + i);
   }
-  bool renew(Id id, Box box, Repair<E>& repair);
-  bool set_partners(Id id, std::vector<Id> partners, double now);
+  bool renew(Id id, Box box, Pen& repair);
+  bool set_partners(Id id, std::vector<Id> partners, Pen& repair);
 
   AabbTreeOptions options_;
   PairListener listener_;
@@ -198,7 +222,7 @@ class AabbTreeRule {
 
 /// Gives an element a fat box. Returns whether that changes its pairs.
 template <MovingElement E, std::size_t Dimension, class PairListener>
-bool AabbTreeRule<E, Dimension, PairListener>::renew(Id id, Box box, Repair<E>& repair) {
+bool AabbTreeRule<E, Dimension, PairListener>::renew(Id id, Box box, Pen& repair) {
   for (std::size_t d = 0; d < Dimension; ++d) {
     box.min[d] -= options_.slack;
     box.max[d] += options_.slack;
@@ -215,11 +239,11 @@ bool AabbTreeRule<E, Dimension, PairListener>::renew(Id id, Box box, Repair<E>& 
     if (other != id) partners.push_back(other);
   });
   std::sort(partners.begin(), partners.end());
-  return set_partners(id, std::move(partners), repair.now());
+  return set_partners(id, std::move(partners), repair);
 }
 
 template <MovingElement E, std::size_t Dimension, class PairListener>
-bool AabbTreeRule<E, Dimension, PairListener>::set_partners(Id id, std::vector<Id> partners, double now) {
+bool AabbTreeRule<E, Dimension, PairListener>::set_partners(Id id, std::vector<Id> partners, Pen& repair) {
   const std::vector<Id> before = std::exchange(partners_[id], std::move(partners));
   const std::vector<Id>& after = partners_[id];
   std::vector<Id> ended, began;
@@ -228,8 +252,14 @@ bool AabbTreeRule<E, Dimension, PairListener>::set_partners(Id id, std::vector<I
   const auto place = [&](Id other) { return std::lower_bound(partners_[other].begin(), partners_[other].end(), id); };
   for (const Id other : ended) partners_[other].erase(place(other));
   for (const Id other : began) partners_[other].insert(place(other), id);
-  for (const Id other : ended) listener_.pair_ended(std::min(id, other), std::max(id, other), now);
-  for (const Id other : began) listener_.pair_began(std::min(id, other), std::max(id, other), now);
+  for (const Id other : ended) {
+    listener_.pair_ended(std::min(id, other), std::max(id, other), repair.now());
+    repair.report(pair(PairChange::What::went, id, other));
+  }
+  for (const Id other : began) {
+    listener_.pair_began(std::min(id, other), std::max(id, other), repair.now());
+    repair.report(pair(PairChange::What::came, id, other));
+  }
   return !ended.empty() || !began.empty();
 }
 

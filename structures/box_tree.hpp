@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "kds/framework/moving_set.hpp"
 #include "structures/tree_box.hpp"
 
@@ -90,7 +91,7 @@ class BoxTree {
   void refit(Place place);
 
   std::vector<Node> nodes_;
-  std::vector<Place> free_;
+  FreeNumbers free_;
   std::vector<Place> leaf_;  ///< by id
   Place root_ = none;
 };
@@ -117,12 +118,12 @@ template <class Box>
 void BoxTree<Box>::remove(Id id) {
   const Place leaf = leaf_[id];
   leaf_[id] = none;
-  free_.push_back(leaf);
+  free_.give_back(leaf);
   if (leaf == root_) return void(root_ = none);
   const Place parent = nodes_[leaf].parent;
   const Place sibling = nodes_[parent].child[nodes_[parent].child[0] == leaf];
   replace(parent, sibling);
-  free_.push_back(parent);
+  free_.give_back(parent);
   refit(nodes_[sibling].parent);
 }
 
@@ -157,12 +158,8 @@ void BoxTree<Box>::visit(const Other& box, Found&& found) const {
 
 template <class Box>
 typename BoxTree<Box>::Place BoxTree<Box>::take_node() {
-  if (free_.empty()) {
-    nodes_.emplace_back();
-    return static_cast<Place>(nodes_.size() - 1);
-  }
-  const Place place = free_.back();
-  free_.pop_back();
+  const Place place = free_.take(nodes_.size());
+  if (place == nodes_.size()) nodes_.emplace_back();
   nodes_[place] = Node{};
   return place;
 }

@@ -27,7 +27,7 @@ namespace kds::structures {
 ///
 /// Cost, besides that of the triangulation: O(log n) certificates for an event and for a flip, which is a change of two
 /// edges (responsive); 3 n matches (compact); locality is that of the triangulation, times log n. External events are
-/// changes of the pair.
+/// changes of the pair, which it reports (AnswerChange), so that other rules may stand on it.
 ///
 /// Points that stay in one place together are a closest pair. While three or more points all stay on one line nothing
 /// is known (DelaunayRule::flat()).
@@ -56,14 +56,15 @@ class ClosestPairRule : public ChampionRule<ClosestPairRule<Path, Delaunay>, Del
   /// O(1), but O(n) while points share a vertex or the triangulation is flat().
   Pair find_answer() const;
 
-  void insert(Id id, Repair<Path>& /*repair*/) {
+  /// Called for a point with a new motion too, after remove().
+  void insert(Id id, typename Base::Pen& repair) {
     if (id >= present_.size()) present_.resize(id + std::size_t{1}, 0);
     present_[id] = 1;
-    this->renew_answer();
+    this->renew_answer(repair);
   }
-  void remove(Id id, Repair<Path>& /*repair*/) {
+  void remove(Id id, typename Base::Pen& repair) {
     present_[id] = 0;
-    this->renew_answer();
+    this->renew_answer(repair);
   }
 
   template <class Archive>

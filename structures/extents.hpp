@@ -29,6 +29,15 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
   return directions;
 }
 
+/// The point that is farthest at one end of a direction has become another, or has got a new motion.
+struct ExtremeChange {
+  std::size_t direction;  ///< its number
+  bool foremost;          ///< or else the hindmost
+  Id id;                  ///< nobody if there are no points
+
+  friend bool operator==(const ExtremeChange&, const ExtremeChange&) = default;
+};
+
 /// Maintains, for each of m directions, the foremost and the hindmost of moving points: the extents that bound the set.
 ///
 /// A binary tournament for each end of each direction. When a match's certificate fails it is played again, and so are
@@ -37,7 +46,8 @@ inline std::vector<std::array<double, 3>> kdop_directions(int k) {
 /// Cost for m directions: a change O(m log n), an event O(log n) certificates (responsive); an element plays in at most
 /// 2 m log2 n matches (local); 2 m (n - 1) certificates (compact). External events are changes of an extreme point.
 ///
-/// Ties: among points that stay equally far the one with the lowest id is the extreme one.
+/// Ties: among points that stay equally far the one with the lowest id is the extreme one. It reports which points come
+/// to be extreme (ExtremeChange), so that other rules may stand on it.
 template <class Path, std::size_t Dimension>
 class ExtentsRule : public Tournaments<ExtentsRule<Path, Dimension>, Path> {
   using Ends = Tournaments<ExtentsRule, Path>;
@@ -45,6 +55,8 @@ class ExtentsRule : public Tournaments<ExtentsRule<Path, Dimension>, Path> {
 
  public:
   using Direction = std::array<double, Dimension>;
+  using Change = ExtremeChange;
+  using Pen = Repair<Path, Change>;
   static constexpr const char* name = "Extents";
 
   /// Throws std::invalid_argument for no direction, or one that is zero or not finite.
@@ -81,14 +93,34 @@ class ExtentsRule : public Tournaments<ExtentsRule<Path, Dimension>, Path> {
     return {x[i], x[j], direction};
   }
 
-  Effect repair(Slot slot, Repair<Path>& repair) {
-    return this->play(slot, repair) ? Effect::external : Effect::internal;
+  Effect repair(Slot slot, Pen& repair) {
+    if (!this->play(slot, repair)) return Effect::internal;
+    repair.report(extreme(this->tournament(slot)));
+    return Effect::external;
   }
-  void insert(Id id, Repair<Path>& repair) {
-    for (std::size_t i = 0; i < ends(); ++i) this->enter(id, i, repair);
+  void insert(Id id, Pen& repair) {
+    for (std::size_t i = 0; i < ends(); ++i) {
+      const bool was_extreme = winner(i) == id;
+      this->enter(id, i, repair);
+      if (was_extreme || winner(i) == id) repair.report(extreme(i));
+    }
   }
-  void remove(Id id, Repair<Path>& repair) { this->leave(id, repair); }
-  void change(Id id, Repair<Path>& repair) { insert(id, repair); }
+  void remove(Id id, Pen& repair) {
+    for (std::size_t i = 0; i < ends(); ++i) {
+      const bool was_extreme = winner(i) == id;
+      this->leave(id, i, repair);
+      if (was_extreme) repair.report(extreme(i));
+    }
+  }
+  void change(Id id, Pen& repair) { insert(id, repair); }
+
+  std::vector<ExtremeChange> changes_from_nothing() const {
+    std::vector<ExtremeChange> changes;
+    for (std::size_t i = 0; i < ends(); ++i) {
+      if (size(i) > 0) changes.push_back(extreme(i));
+    }
+    return changes;
+  }
 
   void audit(const MovingSet<Path>& x, double /*now*/) const { this->audit_matches(x, ends()); }
 
@@ -100,6 +132,7 @@ class ExtentsRule : public Tournaments<ExtentsRule<Path, Dimension>, Path> {
 
  private:
   std::size_t ends() const { return 2 * directions_.size(); }
+  ExtremeChange extreme(std::size_t i) const { return {i / 2, i % 2 == 0, winner(i)}; }
   std::optional<Id> end(std::size_t i) const { return size(i) == 0 ? std::nullopt : std::optional<Id>(winner(i)); }
 
   double value(std::size_t direction, const Path& path, double t) const {

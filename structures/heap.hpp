@@ -15,6 +15,13 @@
 
 namespace kds::structures {
 
+/// Another element is on top, or the one that is there has got a new motion.
+struct TopChange {
+  Id top;  ///< nobody if there are no elements
+
+  friend bool operator==(const TopChange&, const TopChange&) = default;
+};
+
 /// Maintains a binary heap of moving values: no element is greater than its parent.
 ///
 /// One certificate for each element but the top; when it fails, parent and child change places. Papers: [Basch99]
@@ -24,11 +31,14 @@ namespace kds::structures {
 /// n - 1 certificates (compact); insertion, removal and a new motion O(log n). n values that move on lines make at most
 /// O(n log n) events [daFonseca03], of which at most n - 1 change the top.
 ///
-/// If values stay equal any of them may be on top.
+/// If values stay equal any of them may be on top. It reports what comes to be on top (TopChange), so that other rules
+/// may stand on it.
 template <Ranking Rank>
 class HeapRule {
  public:
   using Element = typename Rank::Element;
+  using Change = TopChange;
+  using Pen = Repair<Element, Change>;
   static constexpr const char* name = "Heap";
 
   HeapRule() = default;
@@ -48,18 +58,21 @@ class HeapRule {
   }
   std::array<Id, 2> members(Slot i) const { return {heap_[i], heap_[parent(i)]}; }
 
-  Effect repair(Slot i, Repair<Element>& repair) {
+  Effect repair(Slot i, Pen& repair) {
     exchange(i, parent(i), repair);
-    return parent(i) == 0 ? Effect::external : Effect::internal;
+    if (parent(i) != 0) return Effect::internal;
+    tell_top(repair);
+    return Effect::external;
   }
 
-  void insert(Id id, Repair<Element>& repair) {
+  void insert(Id id, Pen& repair) {
     if (place_.size() <= id) place_.resize(repair.elements().end_id(), absent);
     place_[id] = heap_.size();
     heap_.push_back(id);
     sift(place_[id], repair);
+    if (place_[id] == 0) tell_top(repair);
   }
-  void remove(Id id, Repair<Element>& repair) {
+  void remove(Id id, Pen& repair) {
     const std::size_t hole = place_[id];
     const std::size_t last = heap_.size() - 1;
     if (hole != last) exchange(hole, last, repair);
@@ -67,8 +80,18 @@ class HeapRule {
     place_[id] = absent;
     repair.certify(static_cast<Slot>(last));
     if (hole != last) sift(hole, repair);
+    if (hole == 0) tell_top(repair);
   }
-  void change(Id id, Repair<Element>& repair) { sift(place_[id], repair); }
+  void change(Id id, Pen& repair) {
+    const bool was_top = place_[id] == 0;
+    sift(place_[id], repair);
+    if (was_top || place_[id] == 0) tell_top(repair);
+  }
+
+  std::vector<TopChange> changes_from_nothing() const {
+    if (heap_.empty()) return {};
+    return {{heap_.front()}};
+  }
 
   void audit(const MovingSet<Element>& elements, double /*now*/) const {
     if (heap_.size() != elements.size()) throw AuditFailure("Heap: it does not hold the elements of the set");
@@ -95,7 +118,9 @@ class HeapRule {
   static constexpr std::size_t absent = static_cast<std::size_t>(-1);
   static std::size_t parent(std::size_t i) { return (i - 1) / 2; }
 
-  void exchange(std::size_t i, std::size_t j, Repair<Element>& repair) {
+  void tell_top(Pen& repair) const { repair.report({heap_.empty() ? nobody : heap_.front()}); }
+
+  void exchange(std::size_t i, std::size_t j, Pen& repair) {
     std::swap(heap_[i], heap_[j]);
     place_[heap_[i]] = i;
     place_[heap_[j]] = j;
@@ -104,19 +129,19 @@ class HeapRule {
   }
 
   /// The certificates that the occupant of a place is in.
-  void certify_around(std::size_t i, Repair<Element>& repair) {
+  void certify_around(std::size_t i, Pen& repair) {
     if (i > 0) repair.certify(static_cast<Slot>(i));
     for (std::size_t child = 2 * i + 1; child <= 2 * i + 2 && child < heap_.size(); ++child) {
       repair.certify(static_cast<Slot>(child));
     }
   }
 
-  bool greater(std::size_t i, std::size_t j, const Repair<Element>& repair) const {
+  bool greater(std::size_t i, std::size_t j, const Pen& repair) const {
     return repair.sign(rank_.in_order(repair[heap_[i]], repair[heap_[j]])) < 0;
   }
 
   /// Brings the element at a place up or down to where it belongs.
-  void sift(std::size_t i, Repair<Element>& repair) {
+  void sift(std::size_t i, Pen& repair) {
     certify_around(i, repair);
     while (i > 0 && greater(i, parent(i), repair)) {
       exchange(i, parent(i), repair);

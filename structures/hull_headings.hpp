@@ -17,6 +17,13 @@ namespace kds::structures {
 /// pentagram.
 class HullHeadings {
  public:
+  /// The edge of the hull that an infinite triangle is at, counter-clockwise.
+  static std::array<Id, 2> edge(const TriangleMesh& mesh, std::uint32_t t) {
+    TriangleMesh::Edge h = 3 * t;
+    while (mesh.apex(h) != TriangleMesh::infinite) ++h;
+    return {mesh.target(h), mesh.origin(h)};
+  }
+
   /// Updates the heading of an infinite triangle's hull edge. O(1).
   template <class Path>
   void find(const TriangleMesh& mesh, std::uint32_t t, const PlanePredicates<Path>& is) {
@@ -62,12 +69,6 @@ class HullHeadings {
   enum class Heading : std::int8_t { none, right, left, up, down };
 
   bool is_forward(std::uint32_t t) const { return heading_[t] == Heading::right || heading_[t] == Heading::up; }
-
-  static std::array<Id, 2> edge(const TriangleMesh& mesh, std::uint32_t t) {
-    TriangleMesh::Edge h = 3 * t;
-    while (mesh.apex(h) != TriangleMesh::infinite) ++h;
-    return {mesh.target(h), mesh.origin(h)};
-  }
 
   std::vector<Heading> heading_;  ///< of an infinite triangle
 };

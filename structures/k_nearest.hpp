@@ -3,6 +3,8 @@
 
 #include "certificates/plane_certificates.hpp"
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
+#include "structures/nearest_change.hpp"
 #include "structures/voronoi_cells.hpp"
 
 #include <algorithm>
@@ -30,16 +32,19 @@ namespace kds::structures {
 /// Cost, besides that of the triangulation: on average some 3 k certificates for a point (compact but for this factor),
 /// of degree 2 for linear and 4 for quadratic paths; an event of its own looks at one point, O(k^2) signs and O(k)
 /// certificates (responsive); a point whose neighbours have changed is looked at with all that have it among
-/// their nearest, some k on average. Each event of its own is external, a change of a list.
+/// their nearest, some k on average. Each event of its own is external, a change of a list. It reports whose list is
+/// another (NearestChange), so that other rules may stand on it.
 ///
-/// Of points that stay in one place only DelaunayRule::vertex counts, and the others have its list. While all points
+/// Of points that stay in one place only DelaunayRule::vertex counts, and the others have its list,
+/// which is reported as that of the vertex. While all points
 /// stay on one line nothing is known (DelaunayRule::flat).
 template <class Path>
 class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
  public:
   static constexpr const char* name = "KNearest";
   using Element = Path;
-  using Pen = RepairOf<KNearestRule>;
+  using Change = NearestChange;
+  using Pen = Repair<Path, Change>;
 
   explicit KNearestRule(std::size_t count = 1) : count_(count) {}
 
@@ -79,6 +84,16 @@ class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
     add_users(id);
     for (const Id neighbour : this->inner().neighbours(id)) add_users(neighbour);
     look_at_them(true, repair);
+    repair.report({id});
+    for (const Id user : lists_[id].users) repair.report({user});
+  }
+
+  std::vector<NearestChange> changes_from_nothing() const {
+    std::vector<NearestChange> changes;
+    for (Id id = 0; id < lists_.size(); ++id) {
+      if (!lists_[id].nearest.empty()) changes.push_back({id});
+    }
+    return changes;
   }
 
   void audit(const MovingSet<Path>& elements, double now) const;
@@ -127,7 +142,7 @@ class KNearestRule : public StandsOn<VoronoiCellsRule<Path>> {
   std::size_t count_;
   std::vector<List> lists_;  ///< by vertex
   std::vector<Pair> pairs_;
-  std::vector<Slot> free_;  ///< numbers of pairs that do not exist any more
+  FreeNumbers free_;  ///< numbers of pairs that do not exist any more
   std::vector<Id> nowhere_, looked_at_;
 };
 
@@ -188,20 +203,19 @@ bool KNearestRule<Path>::look(Id id, bool all, Pen& repair) {
     if (goes || all) repair.certify(slot);
     if (!goes) return pairs.erase(same), false;
     pairs_[slot] = {};
-    free_.push_back(slot);
+    free_.give_back(slot);
     return true;
   });
   for (const Pair& pair : pairs) {
-    if (free_.empty()) {
-      free_.push_back(static_cast<Slot>(pairs_.size()));
-      pairs_.emplace_back();
-    }
-    list.pairs.push_back(free_.back());
-    pairs_[free_.back()] = pair;
-    repair.certify(free_.back());
-    free_.pop_back();
+    const Slot slot = free_.take(pairs_.size());
+    if (slot == pairs_.size()) pairs_.emplace_back();
+    pairs_[slot] = pair;
+    list.pairs.push_back(slot);
+    repair.certify(slot);
   }
-  return std::exchange(list.nearest, nearest) != nearest;
+  if (std::exchange(list.nearest, nearest) == nearest) return false;
+  repair.report({id});
+  return true;
 }
 
 template <class Path>

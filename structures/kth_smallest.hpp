@@ -23,7 +23,7 @@ class KthSmallestRule : public LeastRule<ByValue<Value>> {
   Id kth() const { return this->last(); }
   std::size_t rank() const { return this->count() - 1; }
   /// For another rank, to be called in Kinetic::edit(): O(log n) for each rank in between.
-  void set_rank(std::size_t rank, Repair<Value>& repair) { this->set_count(rank + 1, repair); }
+  void set_rank(std::size_t rank, typename KthSmallestRule::Pen& repair) { this->set_count(rank + 1, repair); }
 };
 
 }  // namespace kds::structures

@@ -9,13 +9,32 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 namespace kds::structures {
+
+/// An element has come among the least, or is not among them any more. One that stays there while it gets another
+/// motion goes and comes again, in one call.
+struct LeastChange {
+  enum class What : std::uint8_t { came, went };  ///< among them, from among them
+  What what;
+  Id id;
+
+  friend bool operator==(const LeastChange&, const LeastChange&) = default;
+};
+
+/// Another element is the greatest of the least ones, or the one that is it has got a new motion.
+struct LastChange {
+  Id last;  ///< nobody if there are fewer than count() elements
+
+  friend bool operator==(const LastChange&, const LastChange&) = default;
+};
 
 /// Keeps which k of moving elements are the least, and which of these is the greatest. Two tournaments: the greatest of
 /// the least elements, and the least of the others; one more certificate says that these two are in order. So elements
@@ -25,6 +44,9 @@ namespace kds::structures {
 /// An event is external if last() has become another, so also if another element is among the least. Events: those of
 /// two tournaments, whose elements also come and go, and one for each two elements that change places at rank k:
 /// vertices of the k-level, of which lines have O(n k^(1/3)) [Dey98].
+///
+/// It reports which elements are among the least (LeastChange), and which is the last of them (LastChange), so that
+/// other rules may stand on it.
 ///
 /// The ranking is kept here, so what it contains lives as long as its certificates. One that contains a motion (points
 /// by their distances from a robot) cannot be reversed: reverse() turns round elements only.
@@ -36,6 +58,8 @@ class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
 
  public:
   using typename Sides::Element;
+  using Change = Changes<LeastChange, LastChange>;
+  using Pen = Repair<Element, Change>;
   static constexpr const char* name = "Least";
 
   explicit LeastRule(std::size_t count = 1, Rank ranking = {})
@@ -50,13 +74,15 @@ class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
   const Rank& ranking() const { return ranking_; }
 
   /// For another number, to be called in Kinetic::edit(): O(log n) for each in between.
-  void set_count(std::size_t count, Repair<Element>& repair) {
-    count_ = count;
-    share(repair);
+  void set_count(std::size_t count, Pen& repair) {
+    renew_last(repair, [&] {
+      count_ = count;
+      share(repair);
+    });
   }
   /// For another ranking, to be called in Kinetic::edit(): O(n log n).
-  void set_ranking(Rank ranking, Repair<Element>& repair) {
-    for (const Id id : repair.elements().ids()) leave(id, repair);
+  void set_ranking(Rank ranking, Pen& repair) {
+    for (const Id id : repair.elements().ids()) let_go(id, repair);
     ranking_ = std::move(ranking);
     for (const Id id : repair.elements().ids()) insert(id, repair);
   }
@@ -75,20 +101,34 @@ class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
     return slot > 0 ? Sides::members(slot) : std::array{winner(least), winner(others)};
   }
 
-  Effect repair(Slot slot, Repair<Element>& repair) {
-    const Id before = last();
-    if (slot > 0) this->play(slot, repair);
-    if (slot == 0) move(winner(others), least, repair);  // Then the greatest of the least has to go.
-    share(repair);
-    return last() == before ? Effect::internal : Effect::external;
+  Effect repair(Slot slot, Pen& repair) {
+    return renew_last(repair, [&] {
+      if (slot > 0) this->play(slot, repair);
+      if (slot == 0) move(winner(others), least, repair);  // Then the greatest of the least has to go.
+      share(repair);
+    });
   }
-  void insert(Id id, Repair<Element>& repair) {
-    enter(id, least, repair);
-    share(repair);
+  void insert(Id id, Pen& repair) {
+    renew_last(repair, [&] {
+      enter(id, least, repair);
+      repair.report(LeastChange{LeastChange::What::came, id});
+      share(repair);
+    });
   }
-  void remove(Id id, Repair<Element>& repair) {
-    leave(id, repair);
-    share(repair);
+  void remove(Id id, Pen& repair) {
+    renew_last(repair, [&] {
+      let_go(id, repair);
+      share(repair);
+    });
+  }
+
+  std::tuple<std::vector<LeastChange>, std::vector<LastChange>> changes_from_nothing() const {
+    std::vector<LeastChange> changes;
+    for (Id id = 0; id < this->end_entrant(); ++id) {
+      if (contains(id)) changes.push_back({LeastChange::What::came, id});
+    }
+    if (last() == nobody) return {std::move(changes), {}};
+    return {std::move(changes), {{last()}}};
   }
 
   void audit(const MovingSet<Element>& x, double /*now*/) const {
@@ -105,12 +145,26 @@ class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
   }
 
  private:
-  void move(Id id, std::size_t side, Repair<Element>& repair) {
+  void move(Id id, std::size_t side, Pen& repair) {
     leave(id, repair);
     enter(id, side, repair);
+    repair.report(LeastChange{side == least ? LeastChange::What::came : LeastChange::What::went, id});
+  }
+  void let_go(Id id, Pen& repair) {
+    if (contains(id)) repair.report(LeastChange{LeastChange::What::went, id});
+    leave(id, repair);
+  }
+  /// An element with a new motion is removed and inserted: if it is the last one, another is in between.
+  template <class F>
+  Effect renew_last(Pen& repair, F&& change) {
+    const Id before = last();
+    change();
+    if (last() == before) return Effect::internal;
+    repair.report(LastChange{last()});
+    return Effect::external;
   }
   /// Moves the greatest of the least elements, or the least of the others, until count_ are among the least.
-  void share(Repair<Element>& repair) {
+  void share(Pen& repair) {
     while (size(least) > count_) move(winner(least), others, repair);
     while (size(least) < count_ && size(others) > 0) move(winner(others), least, repair);
     repair.certify(0);

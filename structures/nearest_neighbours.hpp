@@ -4,6 +4,7 @@
 #include "certificates/plane_certificates.hpp"
 #include "kds/audit.hpp"
 #include "structures/delaunay.hpp"
+#include "structures/nearest_change.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +27,8 @@ namespace kds::structures {
 /// Cost, besides that of the triangulation: for a point of k edges, k - 1 certificates for an event of its own, and for
 /// each of its edges that comes or goes (responsive on average: k is 6 then); fewer than 6 n certificates (compact); a
 /// point is in as many as it and its neighbours have edges. Each event is external: a point has another neighbour; a
-/// flip may be.
+/// flip may be. It reports whose neighbour is another (NearestChange), so that other rules may stand on it: of all
+/// points while some share a vertex, or where there are no more than three.
 ///
 /// While three or more points all stay on one line nothing is known (DelaunayRule::flat).
 template <class Path, class Delaunay = DelaunayRule<Path>>
@@ -34,7 +36,8 @@ class NearestNeighboursRule : public StandsOn<Delaunay> {
  public:
   static constexpr const char* name = "NearestNeighbours";
   using Element = Path;
-  using Pen = RepairOf<NearestNeighboursRule>;
+  using Change = NearestChange;
+  using Pen = Repair<Path, Change>;
 
   /// The nearest point, any if several are; none if there is no other, or none is known. O(1), but O(n) while points
   /// share a vertex, or where there is no triangle.
@@ -49,21 +52,34 @@ class NearestNeighboursRule : public StandsOn<Delaunay> {
   Effect repair(Slot slot, Pen& repair) {
     chosen_[from(slot)] = slot;
     for (const Slot other : leaving_[from(slot)]) repair.certify(other);
+    repair.report({from(slot)});
     return Effect::external;
   }
   Effect follow(std::span<const EdgeChange> changes, Pen& repair);
 
-  void insert(Id id, Pen& /*repair*/) {
+  void insert(Id id, Pen& repair) {
     make_room(id);
     present_[id] = 1;
+    tell_of(id, repair);
   }
-  void remove(Id id, Pen& /*repair*/) { present_[id] = 0; }
+  void remove(Id id, Pen& repair) {
+    present_[id] = 0;
+    tell_of(id, repair);
+  }
+
+  std::vector<NearestChange> changes_from_nothing() const {
+    std::vector<NearestChange> changes;
+    for (Id id = 0; id < present_.size(); ++id) {
+      if (present_[id]) changes.push_back({id});
+    }
+    return changes;
+  }
 
   void audit(const MovingSet<Path>& elements, double now) const;
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(ends_, leaving_, chosen_, present_);
+    archive(ends_, leaving_, chosen_, present_, by_edges_);
   }
 
  private:
@@ -87,6 +103,7 @@ class NearestNeighboursRule : public StandsOn<Delaunay> {
     chosen_.resize(id + std::size_t{1}, none);
     present_.resize(id + std::size_t{1}, 0);
   }
+  void tell_of(Id id, Pen& repair);
   void let_go(TriangulationEdges::Number edge, Pen& repair);
   void take_up(TriangulationEdges::Number edge);
 
@@ -94,6 +111,7 @@ class NearestNeighboursRule : public StandsOn<Delaunay> {
   std::vector<std::vector<Slot>> leaving_;  ///< by point
   std::vector<Slot> chosen_;                ///< by point: the shortest of these
   std::vector<std::uint8_t> present_;       ///< by point
+  bool by_edges_ = false;                   ///< whether the edges give all nearest neighbours
   std::vector<Id> changed_;                 ///< points whose edges have changed
 };
 
@@ -117,6 +135,18 @@ std::optional<Id> NearestNeighboursRule<Path, Delaunay>::nearest(Id id) const {
     only = other;
   }
   return only;
+}
+
+/// Reports a point that has come, goes, or has a new motion; and all others where not edges alone decide whose
+/// neighbour it is or has been.
+template <class Path, class Delaunay>
+void NearestNeighboursRule<Path, Delaunay>::tell_of(Id id, Pen& repair) {
+  repair.report({id});
+  const bool before = std::exchange(by_edges_, repair.elements().size() > 3 && !this->inner().has_shared_vertices());
+  if (before && by_edges_) return;
+  for (Id other = 0; other < present_.size(); ++other) {
+    if (present_[other]) repair.report({other});
+  }
 }
 
 template <class Path, class Delaunay>
@@ -154,11 +184,13 @@ Effect NearestNeighboursRule<Path, Delaunay>::follow(std::span<const EdgeChange>
   std::sort(changed_.begin(), changed_.end());
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   for (const Id id : changed_) {
+    Slot& chosen = chosen_[id];
+    const Slot before = chosen;
     for (const Slot slot : leaving_[id]) {
-      Slot& chosen = chosen_[id];
       if (chosen == none || repair.sign(order(chosen, slot, repair.elements())) < 0) chosen = slot;
       repair.certify(slot);
     }
+    if (before == none || chosen != before) repair.report({id});
   }
   return changed_.empty() ? Effect::internal : Effect::external;
 }

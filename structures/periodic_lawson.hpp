@@ -30,6 +30,7 @@ class PeriodicLawson {
     Edge edge;
     PeriodOffset at;
   };
+  /// What has become of a point that was to be inserted.
   struct Found {
     bool same;          ///< whether it stays in one place with a vertex of the mesh, so that it is not inserted:
     VertexCopy vertex;  ///< with this one

@@ -3,6 +3,7 @@
 
 #include "certificates/path_copy.hpp"
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "structures/triangle_mesh.hpp"
 
 #include <algorithm>
@@ -147,7 +148,7 @@ class PeriodicMesh : private TriangleMesh {
     }
     for (const Edge spoke : {first, second, third}) {
       half_edge_[edge_[spoke]] = none;
-      free_edges_.push_back(edge_[spoke]);
+      free_edges_.give_back(edge_[spoke]);
     }
     const std::uint32_t kept = TriangleMesh::merge(vertex);
     for (Edge i = 0; i < 3; ++i) set(3 * kept + i, offsets[i], edges[i]);
@@ -221,19 +222,15 @@ class PeriodicMesh : private TriangleMesh {
   }
 
   Number new_edge() {
-    if (free_edges_.empty()) {
-      half_edge_.push_back(none);
-      return end_edge() - 1;
-    }
-    const Number edge = free_edges_.back();
-    free_edges_.pop_back();
+    const Number edge = free_edges_.take(end_edge());
+    if (edge == end_edge()) half_edge_.push_back(none);
     return edge;
   }
 
   std::vector<PeriodOffset> offset_;  ///< of a half-edge
   std::vector<Number> edge_;          ///< of a half-edge
   std::vector<Edge> half_edge_;       ///< of an edge; none if it is not there
-  std::vector<Number> free_edges_;
+  FreeNumbers free_edges_;
 };
 
 }  // namespace kds::structures

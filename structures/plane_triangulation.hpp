@@ -83,8 +83,9 @@ class PlaneTriangulationRule {
   using Direction = certificates::DirectionOrder<Path, 2>;
   using Choice = std::variant<std::monostate, Orientation, InCircle, Direction>;
 
-  /// What it reports to rules that stand on it: edges, or triangles; a convex hull reports nothing.
-  using Change = std::conditional_t<What == Criterion::delaunay, Changes<EdgeChange, TriangleChange>, void>;
+  /// What it reports to rules that stand on it: edges, or triangles; a convex hull its triangles only, of which those
+  /// at infinity tell of the edges of the hull (hull_edges.hpp).
+  using Change = std::conditional_t<What == Criterion::delaunay, Changes<EdgeChange, TriangleChange>, TriangleChange>;
   using Pen = Repair<Path, Change>;
 
   // Slots 4 t, 4 t + 1, 4 t + 2: the edges of triangle t, each known by the lesser of its half-edges; 4 t + 3: its
@@ -98,7 +99,7 @@ class PlaneTriangulationRule {
   void change(Id id, Pen& repair);
   void build(Pen& repair) { rebuild(nobody, repair); }
   void audit(const MovingSet<Path>& x, double now) const;
-  std::tuple<std::vector<EdgeChange>, std::vector<TriangleChange>> changes_from_nothing() const;
+  typename kds::detail::ChangeTypes<Change>::Lists changes_from_nothing() const;
 
   template <class Archive>
   void archive(Archive& archive) {
@@ -159,17 +160,21 @@ std::vector<Id> PlaneTriangulationRule<Path, What>::hull() const {
 }
 
 template <class Path, Criterion What>
-auto PlaneTriangulationRule<Path, What>::changes_from_nothing() const
-    -> std::tuple<std::vector<EdgeChange>, std::vector<TriangleChange>> {
-  std::vector<EdgeChange> edges;
-  for (TriangulationEdges::Number edge = 0; edge < edges_.end(); ++edge) {
-    if (edges_.contains(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
-  }
+auto PlaneTriangulationRule<Path, What>::changes_from_nothing() const ->
+    typename kds::detail::ChangeTypes<Change>::Lists {
   std::vector<TriangleChange> triangles;
   for (std::uint32_t t = 0; t < mesh_.end_triangle(); ++t) {
     if (mesh_.in_use(t)) triangles.push_back({t});
   }
-  return {std::move(edges), std::move(triangles)};
+  if constexpr (What == Criterion::hull) {
+    return triangles;
+  } else {
+    std::vector<EdgeChange> edges;
+    for (TriangulationEdges::Number edge = 0; edge < edges_.end(); ++edge) {
+      if (edges_.contains(edge)) edges.push_back({EdgeChange::What::came, edge, edges_.ends(edge)});
+    }
+    return {std::move(edges), std::move(triangles)};
+  }
 }
 
 template <class Path, Criterion What>

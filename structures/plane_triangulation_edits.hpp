@@ -97,11 +97,9 @@ void PlaneTriangulationRule<Path, What>::rebuild(Id without, Pen& repair) {
       if (!mesh_.contains(id)) place(id, lawson);
     }
   }
-  if constexpr (What == Criterion::delaunay) {
-    touched_.resize(std::max(before, mesh_.end_triangle()));
-    std::iota(touched_.begin(), touched_.end(), 0u);
-    report_touched(repair);
-  }
+  touched_.resize(std::max(before, mesh_.end_triangle()));
+  std::iota(touched_.begin(), touched_.end(), 0u);
+  report_touched(repair);
   touched_.clear();
   if (!flat()) look_round(is, repair);
   for (Slot slot = 0; slot < 4 * std::max(before, mesh_.end_triangle()); ++slot) repair.certify(slot);
@@ -135,8 +133,8 @@ template <class Path, Criterion What>
 void PlaneTriangulationRule<Path, What>::report_touched(Pen& repair) {
   if constexpr (What == Criterion::delaunay) {
     edges_.update(mesh_, touched_, [&](const EdgeChange& change) { repair.report(change); });
-    for (const std::uint32_t t : touched_) repair.report(TriangleChange{t});
   }
+  for (const std::uint32_t t : touched_) repair.report(TriangleChange{t});
 }
 
 template <class Path, Criterion What>

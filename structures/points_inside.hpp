@@ -3,6 +3,7 @@
 
 #include "kds/audit.hpp"
 #include "kds/framework/elements_rule.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "structures/moving_regions.hpp"
 #include "structures/selection.hpp"
@@ -20,7 +21,7 @@ namespace kds::structures {
 /// A point has entered a region or left it. One that stays inside while it or the region gets another motion leaves and
 /// enters again, in one call.
 struct InsideChange {
-  enum class What : std::uint8_t { entered, left };
+  enum class What : std::uint8_t { entered, left };  ///< on the border is inside
   What what;
   Id region, point;
 
@@ -163,8 +164,8 @@ class PointsInsideRule : public StandsOn<ElementsRule<R>> {
     if (point >= pair_of_[region].size()) pair_of_[region].resize(point + std::size_t{1}, none);
     std::uint32_t& pair = pair_of_[region][point];
     if (pair == none) {
-      pair = free_.empty() ? static_cast<std::uint32_t>(pairs_.size()) : free_.back();
-      free_.empty() ? pairs_.emplace_back() : (free_.pop_back(), pairs_[pair]);
+      pair = free_.take(pairs_.size());
+      if (pair == pairs_.size()) pairs_.emplace_back();
       pairs_[pair] = {region, point};
     }
     if (selection_.contains(pair)) tell(pair, InsideChange::What::left, repair);
@@ -179,14 +180,14 @@ class PointsInsideRule : public StandsOn<ElementsRule<R>> {
     if (selection_.contains(pair)) tell(pair, InsideChange::What::left, repair);
     selection_.let_go(pair);
     pairs_[pair] = {};
-    free_.push_back(pair);
+    free_.give_back(pair);
     pair_of_[region][point] = none;
   }
 
   std::vector<Pair> pairs_;
   Selection<R::sides> selection_;                    ///< pairs whose point is inside
   std::vector<std::uint32_t> count_;                 ///< of points, by region
-  std::vector<std::uint32_t> free_;                  ///< numbers of of pairs that do not exist any more
+  FreeNumbers free_;                                 ///< numbers of pairs
   std::vector<std::vector<std::uint32_t>> pair_of_;  ///< by region and point
 };
 

@@ -63,6 +63,7 @@ class SortedList {
   using Id = std::uint32_t;
   using Element = Motion<Degree>;
 
+  /// A value and its id.
   struct Entry {
     Motion<Degree> motion;
     Id id;

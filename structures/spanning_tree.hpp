@@ -70,7 +70,7 @@ class SpanningTreeRule
     exchanged_ = {longer, shorter};
     return Effect::external;
   }
-  Effect renewed(std::span<const EdgeChange> /*changes*/) {
+  Effect renewed() {
     const std::vector<std::uint8_t> before = std::exchange(in_tree_, {});
     in_tree_.resize(this->inner().edges().end(), false);
     clear_parts();
@@ -87,14 +87,19 @@ class SpanningTreeRule
     return effect;
   }
   Effect follow(std::span<const EdgeChange> changes, Pen& repair) {
-    const Effect effect = Base::follow(changes, repair);
+    for (const EdgeChange& change : changes) {
+      if (change.what == EdgeChange::What::moved) moved_.push_back(change.edge);
+    }
+    return Base::follow(changes, repair);
+  }
+  Effect followed(Pen& repair) {
+    const Effect effect = Base::followed(repair);
     told_.resize(std::max<std::size_t>(told_.size(), in_tree_.size()), nothing);
     for (Edge edge = 0; edge < told_.size(); ++edge) tell(edge, repair);
-    for (const EdgeChange& change : changes) {
-      if (change.what == EdgeChange::What::moved && contains(change.edge)) {
-        repair.report({EdgeChange::What::moved, change.edge, told_[change.edge]});
-      }
+    for (const Edge edge : moved_) {
+      if (contains(edge)) repair.report({EdgeChange::What::moved, edge, told_[edge]});
     }
+    moved_.clear();
     return effect;
   }
   std::vector<EdgeChange> changes_from_nothing() const {
@@ -141,6 +146,7 @@ class SpanningTreeRule
   std::vector<std::uint8_t> in_tree_;  ///< by edge
   std::vector<Ends> told_;             ///< by edge: the ends, as it has reported them; nothing if it is not in the tree
   std::array<Edge, 2> exchanged_{};    ///< in the event that is processed: the one that went and the one that came
+  std::vector<Edge> moved_;            ///< in the edit that is followed: edges that have an end with a new motion
   std::vector<Id> parent_;             ///< of points, in parts of the tree
 };
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "structures/tetrahedron_mesh.hpp"
 #include "structures/triangulation_edges.hpp"
 
@@ -71,7 +72,7 @@ class SpatialEdges {
       report(EdgeChange{EdgeChange::What::went, edge, ends_[edge]});
       number_.erase(key(ends_[edge][0], ends_[edge][1]));
       ends_[edge] = {nobody, nobody};
-      free_.push_back(edge);
+      free_.give_back(edge);
     }
     for (const Number edge : came_) report(EdgeChange{EdgeChange::What::came, edge, ends_[edge]});
   }
@@ -129,12 +130,10 @@ class SpatialEdges {
   Number find_or_create(Id a, Id b) {
     const auto [entry, is_new] = number_.try_emplace(key(a, b), none);
     if (!is_new) return entry->second;
-    const Number edge = free_.empty() ? end() : free_.back();
-    if (free_.empty()) {
+    const Number edge = free_.take(end());
+    if (edge == end()) {
       ends_.emplace_back();
       count_.push_back(0);
-    } else {
-      free_.pop_back();
     }
     ends_[edge] = {std::min(a, b), std::max(a, b)};
     came_.push_back(edge);
@@ -144,7 +143,7 @@ class SpatialEdges {
   std::vector<Corners> corners_;  ///< by tetrahedron, as taken up
   std::vector<std::array<Id, 2>> ends_;
   std::vector<std::uint32_t> count_;  ///< by edge: of tetrahedra that have it
-  std::vector<Number> free_;
+  FreeNumbers free_;
   std::unordered_map<std::uint64_t, Number> number_;  ///< by ends; never gone through, so that its order is no matter
 
   // While it updates:

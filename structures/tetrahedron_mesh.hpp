@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "kds/framework/moving_set.hpp"
 
 #include <algorithm>
@@ -171,13 +172,10 @@ class TetrahedronMesh {
   }
 
   std::uint32_t create(const Corners& corners) {
-    std::uint32_t t = end_tetrahedron();
-    if (free_.empty()) {
+    const std::uint32_t t = free_.take(end_tetrahedron());
+    if (t == end_tetrahedron()) {
       corner_.resize(4 * std::size_t{t} + 4);
       twin_.resize(4 * std::size_t{t} + 4);
-    } else {
-      t = free_.back();
-      free_.pop_back();
     }
     for (Facet i = 0; i < 4; ++i) {
       corner_[4 * t + i] = corners[i];
@@ -215,7 +213,7 @@ class TetrahedronMesh {
   std::vector<Facet> twin_;
   std::vector<std::uint32_t> at_;  ///< a tetrahedron of a vertex
   std::uint32_t at_infinity_ = none;
-  std::vector<std::uint32_t> free_;
+  FreeNumbers free_;
   mutable std::vector<std::uint8_t> scratch_;
 };
 
@@ -237,7 +235,7 @@ inline std::vector<std::uint32_t> TetrahedronMesh::replace(const std::vector<std
   for (const std::uint32_t t : removed) gone[t] = 0;
   for (auto t = removed.rbegin(); t != removed.rend(); ++t) {
     twin_[4 * std::size_t{*t}] = none;
-    free_.push_back(*t);
+    free_.give_back(*t);
   }
   std::vector<std::uint32_t> created;
   for (const Corners& corners : others) {

@@ -46,6 +46,14 @@ class Tournaments {
   /// One that is not worse than any; nobody if there are none.
   Id winner(std::size_t tournament) const { return brackets_[tournament].winner(); }
   bool contains(Id id, std::size_t tournament) const { return brackets_[tournament].contains(id); }
+  /// The tournament that a slot belongs to.
+  std::size_t tournament(Slot slot) const { return slot % brackets_.size(); }
+  /// Ids of elements are below this.
+  Id end_entrant() const {
+    std::size_t end = 0;
+    for (const Bracket& each : brackets_) end = std::max(end, each.capacity());
+    return static_cast<Id>(end);
+  }
   /// How many elements there are.
   std::size_t size(std::size_t tournament) const { return brackets_[tournament].size(); }
 
@@ -64,22 +72,20 @@ class Tournaments {
     brackets_[i].reserve(id + std::size_t{1}, beats(i, repair), marks(i, repair));
     brackets_[i].set(id, true, beats(i, repair), marks(i, repair));
   }
-  /// Lets an element out, in whichever tournament it is.
+  /// Lets an element out, if it is in this tournament; or in whichever it is.
+  template <class Pen>
+  void leave(Id id, std::size_t i, Pen& repair) {
+    if (contains(id, i)) brackets_[i].set(id, false, beats(i, repair), marks(i, repair));
+  }
   template <class Pen>
   void leave(Id id, Pen& repair) {
-    for (std::size_t i = 0; i < brackets_.size(); ++i) {
-      if (contains(id, i)) brackets_[i].set(id, false, beats(i, repair), marks(i, repair));
-    }
+    for (std::size_t i = 0; i < brackets_.size(); ++i) leave(id, i, repair);
   }
 
   /// Throws AuditFailure unless each element is in `tournaments` of them, and nobody else is in any.
   void audit_matches(const MovingSet<Element>& x, std::size_t tournaments) const {
-    std::size_t end = x.end_id();
-    for (const Bracket& each : brackets_) {
-      each.audit(Rule::name);
-      end = std::max(end, each.capacity());
-    }
-    for (Id id = 0; id < end; ++id) {
+    for (const Bracket& each : brackets_) each.audit(Rule::name);
+    for (Id id = 0; id < std::max(x.end_id(), end_entrant()); ++id) {
       const auto here =
           std::count_if(brackets_.begin(), brackets_.end(), [id](const Bracket& b) { return b.contains(id); });
       if (static_cast<std::size_t>(here) == (x.contains(id) ? tournaments : 0)) continue;
@@ -99,7 +105,6 @@ class Tournaments {
  private:
   const Rule& rule() const { return static_cast<const Rule&>(*this); }
   std::size_t match(Slot slot) const { return slot / brackets_.size(); }
-  std::size_t tournament(Slot slot) const { return slot % brackets_.size(); }
   const Bracket& bracket(Slot slot) const { return brackets_[tournament(slot)]; }
 
   template <class Pen>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "kds/framework/moving_set.hpp"
 
 #include <algorithm>
@@ -189,21 +190,17 @@ class TriangleMesh {
   }
 
   Edge create(const std::array<Id, 3>& corners) {
-    Edge h = 0;
-    if (free_.empty()) {
-      h = static_cast<Edge>(twin_.size());
+    const Edge h = 3 * free_.take(end_triangle());
+    if (h == twin_.size()) {
       origin_.resize(h + std::size_t{3}, infinite);
       twin_.resize(h + std::size_t{3}, 0);
-    } else {
-      h = 3 * free_.back();
-      free_.pop_back();
     }
     for (Edge i = 0; i < 3; ++i) set_origin(h + i, corners[i]);
     return h;
   }
 
   void release(std::uint32_t triangle) {
-    free_.push_back(triangle);
+    free_.give_back(triangle);
     for (Edge h = 3 * triangle; h < 3 * triangle + 3; ++h) twin_[h] = none;
   }
 
@@ -246,7 +243,7 @@ class TriangleMesh {
   std::vector<Edge> twin_;
   std::vector<Edge> from_;  ///< of a vertex
   Edge at_infinity_ = none;
-  std::vector<std::uint32_t> free_;
+  FreeNumbers free_;  ///< of triangles
 };
 
 }  // namespace kds::structures

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/audit.hpp"
+#include "kds/framework/free_numbers.hpp"
 #include "structures/triangle_mesh.hpp"
 
 #include <algorithm>
@@ -72,7 +73,7 @@ class TriangulationEdges {
       if (fate_[edge] == Fate::stays) continue;
       report(EdgeChange{EdgeChange::What::went, edge, ends_[edge]});
       ends_[edge] = {nobody, nobody};
-      free_.push_back(edge);
+      free_.give_back(edge);
     }
     for (const TriangleMesh::Edge h : inner_) {
       if (of_[h] != none) continue;
@@ -174,13 +175,11 @@ class TriangulationEdges {
   }
 
   Number create(const std::array<Id, 2>& ends) {
-    if (free_.empty()) {
-      ends_.push_back(ends);
+    const Number edge = free_.take(end());
+    if (edge == end()) {
+      ends_.emplace_back();
       half_edge_.push_back(TriangleMesh::none);  // which update() sets
-      return end() - 1;
     }
-    const Number edge = free_.back();
-    free_.pop_back();
     ends_[edge] = ends;
     return edge;
   }
@@ -188,7 +187,7 @@ class TriangulationEdges {
   std::vector<Number> of_;  ///< of a half-edge
   std::vector<std::array<Id, 2>> ends_;
   std::vector<TriangleMesh::Edge> half_edge_;
-  std::vector<Number> free_;
+  FreeNumbers free_;
 
   // While it updates:
   enum class Fate : std::uint8_t { open, stays, gone };

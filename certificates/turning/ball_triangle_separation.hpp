@@ -16,7 +16,7 @@ namespace kds::certificates {
 /// The face of a triangle seen from one side (0: from which its corners are counter-clockwise; 1: from the other), an
 /// edge (from corner k to the next) or a corner.
 struct TrianglePart {
-  enum class Kind { face, edge, corner };
+  enum class Kind { face, edge, corner };  ///< a face has a side for its number
   Kind kind;
   std::size_t number;
 };

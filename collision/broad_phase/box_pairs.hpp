@@ -24,6 +24,7 @@ namespace kds::collision {
 class BoxPairs {
  public:
   using Index = std::uint32_t;
+  /// Two boxes that overlap, by their places in the list that was given.
   struct Pair {
     Index a, b;  ///< in no order
   };

@@ -52,6 +52,7 @@ class PairListener {
 template <int Degree>
 class BroadPhase {
  public:
+  /// A body that is added, and its bounding volume, which the caller keeps.
   struct Entry {
     BodySlot slot;
     const KineticBox<Degree>* box;

@@ -33,6 +33,7 @@ struct SurfaceQuery {
 
 /// Two features in contact. Those of a are what it says; `contact.point` is on the surface of a.
 struct SurfaceContact {
+  /// Which features they are.
   enum class Kind : std::uint8_t {
     vertex_face,  ///< a vertex of a and a face of b
     face_vertex,

@@ -24,6 +24,7 @@ namespace kds::collision {
 template <int Degree>
 class BendingPieces {
  public:
+  /// A stretch of time, in s.
   struct Piece {
     double begin, end;
   };

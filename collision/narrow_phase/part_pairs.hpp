@@ -23,6 +23,7 @@ inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
 /// Pairs of parts that may meet, and from when to when.
 class ListOfPartPairs {
  public:
+  /// Two parts that may meet in a stretch of time.
   struct Pair {
     const PlacedShape* a;
     const PlacedShape* b;

@@ -18,6 +18,7 @@ namespace kds::collision {
 template <int Degree, std::size_t MostPieces, std::size_t MostConditions>
 class TouchPieces {
  public:
+  /// Conditions that hold together: when each of them does.
   struct Piece {
     boost::container::static_vector<SpansOf<Degree>, MostConditions> conditions;
 

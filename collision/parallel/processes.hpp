@@ -18,6 +18,7 @@ namespace kds::collision {
 /// with what it has to say.
 class Processes {
  public:
+  /// What one process has to say to another.
   struct Letter {
     std::size_t process;  ///< to which it goes, or from which it comes
     std::vector<char> content;

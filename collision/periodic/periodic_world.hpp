@@ -113,6 +113,7 @@ class PeriodicWorld final : private WorldListener<Degree> {
   /// Bodies and images, for queries. It has ids of its own: owner() says which body is meant, or which body's image.
   const World<Degree>& world() const { return world_; }
   BodyId in_world(BodyId id) const { return real(id).in_world; }
+  /// The body that an id of world() means, or that it means an image of.
   struct Owner {
     BodyId body;
     Offset offset;  ///< of the image; 0 of a body itself

@@ -14,7 +14,7 @@ namespace kds::collision {
 /// the opposite one. Those of a hull are indices into the points that were given, and into the faces of HullStructure.
 /// Of a capsule, vertex 0 is the end at -half_length, vertex 1 the other, and its only edge its side.
 struct Feature {
-  enum class Kind : std::uint8_t { none, vertex, edge, face };
+  enum class Kind : std::uint8_t { none, vertex, edge, face };  ///< none: the shape has no such parts
 
   Kind kind = Kind::none;
   std::uint32_t first = 0;   ///< the vertex or face; of an edge its lower vertex

@@ -23,7 +23,7 @@ struct SolidIntegrals;
 /// A mesh that cannot be used. The message names what is wrong and where.
 class InvalidMesh : public std::invalid_argument {
  public:
-  enum class Part : std::uint8_t { whole, vertex, triangle };
+  enum class Part : std::uint8_t { whole, vertex, triangle };  ///< what is wrong: the whole, or one
 
   InvalidMesh(Part part, std::size_t index, const std::string& what)
       : std::invalid_argument(what), part_(part), index_(index) {}

@@ -19,6 +19,7 @@ namespace kds::collision {
 /// the body.
 class MeshScript {
  public:
+  /// Where the vertices are at a time, in the order of the mesh.
   struct Keyframe {
     double time;  ///< s
     std::vector<Eigen::Vector3d> positions;

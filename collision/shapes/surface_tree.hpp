@@ -34,6 +34,7 @@ struct SurfaceElement {
 /// up. Cost: O(n log n) to build, 2 n - 1 nodes.
 class SurfaceTree {
  public:
+  /// A box of the tree, which is around one element or around two smaller boxes.
   struct Node {
     std::uint32_t first;  ///< of a leaf: its element; else the first of two children, which stand side by side
     bool is_leaf;

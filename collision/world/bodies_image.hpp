@@ -21,6 +21,7 @@ inline std::uint64_t number_hash(BodySlot number) {
 
 template <class Motion>
 struct Bodies<Motion>::Image {
+  /// What is saved of one body.
   struct One {
     bool alive = false;
     bool entered = false;

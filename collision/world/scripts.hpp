@@ -41,6 +41,7 @@ class Scripts {
   /// When the next piece begins.
   double next_time() const { return starts_.empty() ? never : starts_.top().time; }
 
+  /// The motion that a body has from then on.
   struct Piece {
     BodySlot slot;
     Motion motion;

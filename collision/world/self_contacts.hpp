@@ -34,6 +34,7 @@ class SelfContacts {
 
   /// When the next contact begins or ends.
   double next_time() const { return times_.empty() ? never : times_.top().time; }
+  /// A body begins to touch itself, or ceases to.
   struct Event {
     BodySlot slot;
     bool separates;

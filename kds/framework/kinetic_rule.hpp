@@ -161,9 +161,18 @@ concept AuditsItself = requires(const R& rule, const MovingSet<typename R::Eleme
   { rule.audit(elements, now) } -> std::same_as<void>;
 };
 
+/// `Effect followed(Repair<Element>& repair)`: called after the last follow() of an event or edit, when all inner rules
+/// have told what they had to tell, and in the beginning. Only for a rule that stands on others. Without it: each
+/// follow() takes up its changes at once.
+template <class R>
+concept ActsWhenFollowed = OuterRule<R> && requires(R& rule, RepairOf<R>& repair) {
+  { rule.followed(repair) } -> std::same_as<Effect>;
+};
+
 namespace detail {
 
 KDS_MEMBER_NAMED(NamesChange, change);
+KDS_MEMBER_NAMED(NamesFollowed, followed);
 KDS_MEMBER_NAMED(NamesKeeps, keeps);
 KDS_MEMBER_NAMED(NamesBuild, build);
 KDS_MEMBER_NAMED(NamesAudit, audit);
@@ -195,6 +204,9 @@ struct RightRule {
       !OuterRule<Rule> || Follows<Rule>,
       "kinetic rule: `Effect follow(std::span<const Inner::Change>, Repair<Element>&)` is missing (if it stands "
       "on several rules, `Effect follow(From<I>, std::span<const Change>, Repair<Element>&)` for each)");
+  static_assert(
+      ActsWhenFollowed<Rule> || !NamesFollowed<Rule>,
+      "kinetic rule: `followed` must be `Effect followed(Repair<Element>&)`, of a rule that stands on others");
   static_assert(!ReportsChanges<Rule> || TellsItsState<Rule>,
                 "kinetic rule: `std::vector<Change> changes_from_nothing() const` is missing");
   static_assert(TakesUpMotions<Rule> || !NamesChange<Rule>,

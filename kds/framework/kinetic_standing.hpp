@@ -45,6 +45,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::build(double now) {
         detail::follow_at(this->rule_, place, std::get<List>(changes), this->repair_);
       }
     });
+    if constexpr (ActsWhenFollowed<Rule>) rule_.followed(repair_);
     if constexpr (BuildsAtOnce<Rule>) {
       rule_.build(repair_);
     } else if constexpr (detail::Inserts<Rule>) {
@@ -103,6 +104,9 @@ void Kinetic<Rule, Listener, Queue, Solver>::follow(double now, bool in_event, d
     if (detail::follow_at(this->rule_, place, told_at(place).changes_, this->repair_) == Effect::external)
       effect = Effect::external;
   });
+  if constexpr (ActsWhenFollowed<Rule>) {
+    if (rule_.followed(repair_) == Effect::external) effect = Effect::external;
+  }
   if (in_event) {
     ++measures_.followed;
     count_touched();

@@ -106,8 +106,13 @@ struct Told<Telling<InnerRule, Heard>> {
 ///
 ///     follow(From<1>, changes, repair) -> Effect
 ///
-/// takes up what B has reported; there is one for each. The elements are those of A, if it is given none of its own.
-/// Two places may be of one structure (of which it hears changes of two types), and one inner structure may stand on
+/// takes up what B has reported; there is one for each. What depends on several of them is taken up when all have told
+/// theirs, by
+///
+///     followed(repair) -> Effect                  called after the last follow(), if the rule has it
+///
+/// and the whole is external if any of these calls is. The elements are those of A, if it is given none of its own. Two
+/// places may be of one structure (of which it hears changes of two types), and one inner structure may stand on
 /// another.
 ///
 /// It needs no insert() and remove(). If it has them, or a change(), they are called after follow(): when an element
@@ -118,14 +123,14 @@ struct Told<Telling<InnerRule, Heard>> {
 /// are all inner rules: all their events up to that time have been processed. Certificates may depend on them; but
 /// follow() must mark all slots whose certificates have changed, which the changes must tell. (2) In one event or edit
 /// the outer rule is called after all inner ones: then follow() once for each place whose rule has reported something,
-/// in the order of the places; then its own insert(), remove() or change(). So at each call all inner rules have taken
-/// up the same event or edit. Certificates are made when follow() has been called for the last place. (3) Events of one
-/// time are taken up one by one, in the order of the simulator: those of A, then those of B, then those of the outer
-/// rule; an event of an inner rule that is due again by then comes before those too. While follow() is called, inner
-/// rules may have further events of this time, of which it will be told. (4) The first call is follow() with
-/// inner().changes_from_nothing(), for each place; then insert() of each element, if there is one. (5) An outer rule
-/// changes neither the inner ones nor the elements. (6) Listeners are called when all structures are valid, that of a
-/// structure after those of the structures that it stands on.
+/// in the order of the places; followed(); then its own insert(), remove() or change(). So at each call all inner rules
+/// have taken up the same event or edit. Certificates are made when follow() has been called for the last place, and
+/// followed(). (3) Events of one time are taken up one by one, in the order of the simulator: those of A, then those of
+/// B, then those of the outer rule; an event of an inner rule that is due again by then comes before those too. While
+/// follow() is called, inner rules may have further events of this time, of which it will be told. (4) The first calls
+/// are follow() with inner().changes_from_nothing(), for each place; followed(); and insert() of each element, if there
+/// is one. (5) An outer rule changes neither the inner ones nor the elements. (6) Listeners are called when all
+/// structures are valid, that of a structure after those of the structures that it stands on.
 template <class... Inners>
 class StandsOn {
   template <std::size_t I>

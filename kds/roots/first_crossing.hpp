@@ -19,6 +19,7 @@ namespace kds {
 
 /// The result of a search for the first x in (0, end] where a polynomial turns from + to -.
 struct Crossing {
+  /// What has been found.
   enum class Status {
     none,      ///< certified: the polynomial is >= 0 on (0, end]
     isolated,  ///< certified: > 0 on (0, after], and one sign change, from + to -, in (after, before)

@@ -92,35 +92,16 @@ int check_edges(const EdgesRule<Path>& rule, const MovingSet<Path>& set, double 
   return (edges != told || told.size() != rule.edges.size()) + !same_points;
 }
 
-/// How often the smallest gap has become another: a rule on a rule on a rule.
-struct SmallestGapReports : SmallestGapRule {
-  struct Change {
-    std::optional<std::array<Id, 2>> pair;
-  };
-  static constexpr const char* name = "SmallestGapReports";
-  using Pen = Repair<Element, Change>;
-
-  Effect repair(Slot slot, Pen& pen) { return told(SmallestGapRule::repair(slot, pen), pen); }
-  Effect follow(std::span<const examples::NewNeighbour> changes, Pen& pen) {
-    return told(SmallestGapRule::follow(changes, pen), pen);
-  }
-  std::vector<Change> changes_from_nothing() const { return {{pair()}}; }
-
- private:
-  Effect told(Effect effect, Pen& pen) const {
-    if (effect == Effect::external) pen.report({pair()});
-    return effect;
-  }
-};
-struct LastGapRule : StandsOn<SmallestGapReports> {
+/// The smallest gap, by what has been told of it: a rule on a rule on a rule.
+struct LastGapRule : StandsOn<SmallestGapRule> {
   static constexpr const char* name = "LastGap";
   std::optional<std::array<Id, 2>> pair{};
 
   std::optional<examples::Narrower> certificate(Slot, const MovingSet<Element>&) const { return std::nullopt; }
   std::array<Id, 0> members(Slot) const { return {}; }
   Effect repair(Slot, Repair<Element>&) { return Effect::internal; }
-  Effect follow(std::span<const SmallestGapReports::Change> changes, Repair<Element>&) {
-    pair = changes.back().pair;
+  Effect follow(std::span<const SmallestGapRule::Change> changes, Repair<Element>&) {
+    pair = changes.back().answer;
     return Effect::external;
   }
   template <class Archive>

@@ -41,6 +41,7 @@ class TurningBallAndPolytope {
   /// Faces, edges, corners.
   int ways;
 
+  /// The two at a time, the polytope as `Seen` sees it.
   template <class Seen>
   struct FrameOf : PairFrame<Degree> {
     FrameOf(const TurningBallAndPolytope& pair, double t)

@@ -129,6 +129,7 @@ class TurningHulls {
     std::array<Eigen::Vector3d, 3> u, v;
   };
 
+  /// A way in which a plane may lie between the hulls, and how far apart they are along it; negative if they overlap.
   struct Widest {
     int way = 0;
     double gap = -never;

@@ -22,6 +22,7 @@ requires(!turns<Motion>) class Tumbling<Motion> {
   static bool has(BodySlot) { return false; }
   static const Motion& take_up(BodySlot, const Motion& given, double) { return given; }
   static constexpr double next_time() { return never; }
+  /// Of Tumbling: the motion that a body has from then on.
   struct Piece {
     BodySlot slot;
     Motion motion;
@@ -31,6 +32,7 @@ requires(!turns<Motion>) class Tumbling<Motion> {
   static void set_unheard_until(double) {}
   static void audit(double) {}
 
+  /// Of Tumbling: the state of a body, from which another world goes on. There is none.
   struct Progress {
     template <class Archive>
     void archive(Archive&) {}
@@ -41,6 +43,7 @@ requires(!turns<Motion>) class Tumbling<Motion> {
   static void go_on_from(BodySlot, const Progress&) {}
   static void go_on() {}
 
+  /// Of Tumbling: all of it, as plain data. There is none.
   struct Image {
     template <class Archive>
     void archive(Archive&) {}

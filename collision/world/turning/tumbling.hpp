@@ -96,6 +96,7 @@ class Tumbling {
 
   /// When the next piece begins.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
+  /// The motion that a body has from then on.
   struct Piece {
     BodySlot slot;
     Motion motion;

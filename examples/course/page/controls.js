@@ -124,11 +124,16 @@ function markEvents(number) {
     row.classList.toggle('latest', k === number - 1);
     if (k !== number - 1) return row.firstChild.removeAttribute?.('aria-current');
     row.firstChild.setAttribute('aria-current', 'step');
-    const list = $('events');
-    if (row.offsetTop < list.scrollTop || row.offsetTop + row.offsetHeight > list.scrollTop + list.clientHeight) {
-      list.scrollTop = row.offsetTop - list.clientHeight / 2;
-    }
   });
+  showLatest();
+}
+/** Scrolls the list of events to the latest one, if that is not wholly seen. */
+function showLatest() {
+  const [list, row] = [$('events'), $('events').querySelector('.latest')];
+  if (!row) return;
+  if (row.offsetTop < list.scrollTop || row.offsetTop + row.offsetHeight > list.scrollTop + list.clientHeight) {
+    list.scrollTop = row.offsetTop - list.clientHeight / 2;
+  }
 }
 
 // Under the slider: what has happened and will, and when the certificates of now fail. Some of those will never come to
@@ -210,6 +215,7 @@ function resize() {
   const least = document.querySelector('main').style;
   least.setProperty('--stage-height', `${Math.max(stage.offsetHeight, 560)}px`);
   $('aside').style.maxHeight = beside($('aside')) ? 'var(--stage-height)' : '';
+  showLatest();
 }
 function layOut(width, height) {
   set($('figure'), {viewBox: `0 0 ${width} ${height}`, height});

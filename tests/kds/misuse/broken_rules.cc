@@ -133,6 +133,9 @@ struct FollowsBoth : HalfDeaf {
   Effect follow(From<0>, std::span<const int>, Repair<Value>&) { return Effect::internal; }
 };
 static_assert(!KineticRule<HalfDeaf> && KineticRule<FollowsBoth>);
+struct FollowedForNothing : FollowsBoth {
+  void followed(Repair<Value>&) {}
+};
 
 template <class Rule>
 using With = Kinetic<Rule>;
@@ -148,6 +151,7 @@ constexpr std::size_t sizes[] = {sizeof(With<WithoutElement>),   sizeof(With<Wit
                                  sizeof(With<RepairsACopy>),     sizeof(With<Silent>),
                                  sizeof(With<Deaf>),             sizeof(With<Reports>),
                                  sizeof(With<HearsOfOthers>),    sizeof(With<HalfDeaf>),
+                                 sizeof(With<FollowedForNothing>),
                                  sizeof(Kinetic<Base, NoListener, DefaultEventQueue, int>)};
 
 struct LateSolver : CertifiedSolver {

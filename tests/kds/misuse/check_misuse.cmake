@@ -31,7 +31,7 @@ said_of(broken_rules.cc
   "certificate: `static constexpr int degree` is missing" "is missing, or does not take every Number"
   "certificate: `degree` is not the degree of its polynomial" "has no `Change`, and so tells nothing"
   "Inner::Change>, Repair<Element>&)` is missing" "changes_from_nothing() const` is missing"
-  "does not report the change that `Telling` names" "found for certificates of degree 31 at most")
+  "`followed` must be" "does not report the change that `Telling` names" "found for certificates of degree 31 at most")
 string(REGEX MATCH "[^\n]*static assertion failed: KineticRule<(Base|KeepsAndChanges)>[^\n]*" whole_is_broken "${said}")
 if(whole_is_broken)
   message(FATAL_ERROR "A rule from which nothing is missing is refused:\n${said}")
