@@ -52,6 +52,20 @@
 #define KDS_FOR_ALL_MOTIONS(declare) KDS_FOR_ALL_PATHS(declare)
 #endif
 
+namespace kds::collision {
+
+/// Whether worlds of bodies with this type of motion are compiled in the libraries that a program is linked with. One
+/// who compiles a world for a motion of their own specialises it.
+template <class Motion>
+inline constexpr bool has_compiled_world = false;
+#define KDS_DECLARE(motion) \
+  template <>               \
+  inline constexpr bool has_compiled_world<motion> = true;
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
+#undef KDS_DECLARE
+
+}  // namespace kds::collision
+
 #ifdef KDS_TURNING
 #define KDS_FOR_ALL_QUADRATIC(declare)                                                                              \
   declare(certificates::PointMotion<1>) declare(certificates::PointMotion<2>) declare(certificates::RigidMotion<1>) \

@@ -60,6 +60,11 @@ class BasicWorld final {
   static_assert(BodyMotionType::degree >= 1 && BodyMotionType::degree <= KDS_GREATEST_DEGREE,
                 "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
                 "curves of degree 3 to 5");
+  static_assert(has_compiled_world<BodyMotionType> || BodyMotionType::degree < 1 ||
+                    BodyMotionType::degree > KDS_GREATEST_DEGREE,
+                "World: no world of bodies with this type of motion is compiled in the library: those of bodies that "
+                "turn (RigidMotion) are in kds::collision_turning, of degree 1 and 2; collision/motions.hpp says which "
+                "there are");
 
  public:
   using Motion = BodyMotionType;

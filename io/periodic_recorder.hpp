@@ -47,7 +47,7 @@ class PeriodicRecorder final : public kds::collision::PeriodicListener<Degree>,
       return std::count(options.boundaries.begin(), options.boundaries.end(), kind) > 0;
     };
     if (has(Boundary::open)) return {};
-    return Domain{options.min, options.max, has(Boundary::periodic) ? Walls::open : Walls::reflect};
+    return Domain{options.min, options.max, !has(Boundary::periodic)};
   }
   static void visit(const World& world, const auto& see) {
     const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

@@ -264,7 +264,7 @@ std::string Record::to_json(const Scene& scene, const std::string& title) const 
     append_vector(text, scene.domain->min);
     text += ",\"max\":";
     append_vector(text, scene.domain->max);
-    text += scene.domain->walls == Walls::reflect ? ",\"walls\":true}" : ",\"walls\":false}";
+    text += scene.domain->reflects ? ",\"walls\":true}" : ",\"walls\":false}";
   }
   text += ",\n\"meshes\":[";
   std::map<const kds::collision::Mesh*, std::size_t> mesh_numbers;

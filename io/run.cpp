@@ -143,7 +143,7 @@ kds::collision::WorldOptions world_options(const Scene& scene, const RunOptions&
   world_options.profile = options.profile;
   world_options.threads = options.threads;
   if (scene.end_time > scene.begin_time) world_options.window = scene.end_time - scene.begin_time;
-  if (scene.domain && scene.domain->walls == Walls::reflect) {
+  if (scene.domain && scene.domain->reflects) {
     world_options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   return world_options;

@@ -62,14 +62,11 @@ struct SceneMesh {
 };
 
 using kds::collision::Response;  ///< a scene has `none` or `elastic`
-/// What is at the border of a domain.
-enum class Walls { open, reflect };
-
 /// The box in which a scene takes place.
 struct Domain {
   Eigen::Vector3d min;
   Eigen::Vector3d max;
-  Walls walls = Walls::open;
+  bool reflects = false;   ///< whether its faces are walls
   double restitution = 1;  ///< of the walls
 };
 

@@ -158,7 +158,7 @@ Domain read_domain(const JsonNode& node, const SurfaceNumbers& of_scene) {
     const auto i = static_cast<Eigen::Index>(d);
     if (!(domain.min[i] < domain.max[i])) ends[d].fail("must be > domain.min[" + std::to_string(d) + "]");
   }
-  domain.walls = node["walls"].choice({"open", "reflect"}) == 1 ? Walls::reflect : Walls::open;
+  domain.reflects = node["walls"].choice({"open", "reflect"}) == 1;
   domain.restitution = read_surface(node, of_scene).restitution;
   return domain;
 }

@@ -50,7 +50,7 @@ class WorldRecorder final
  private:
   static std::optional<Domain> domain_of(const kds::collision::WorldOptions& options) {
     if (!options.walls) return {};
-    return Domain{options.walls->min, options.walls->max, Walls::reflect, options.walls->restitution};
+    return Domain{options.walls->min, options.walls->max, true, options.walls->restitution};
   }
   static void visit(const World& world, const auto& see) {
     const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());

@@ -12,9 +12,9 @@
 #include <string_view>
 
 // With KDS_CHECK_QUICK_ANSWERS defined, which the preset `dev` does, in all files of a program: of the answers of each
-// hook of each kind of certificate (certificate_hooks.hpp) the first and then every 1024th is computed by the general
-// way too, in each thread. Where they differ std::logic_error names the certificate. Neither events nor sign_counters
-// change. Without the macro nothing of this is compiled.
+// hook of each kind of certificate (certificate_hooks.hpp, turning/turning_certificate.hpp) the first and then every
+// 1024th is computed by the general way too, in each thread. Where they differ std::logic_error names the certificate.
+// Neither events nor the counters of signs change. Without the macro nothing of this is compiled.
 namespace kds::detail {
 
 #ifdef KDS_CHECK_QUICK_ANSWERS
@@ -23,7 +23,16 @@ inline constexpr bool checks_quick_answers = true;
 inline constexpr bool checks_quick_answers = false;
 #endif
 
-enum class Hook { vanishes, extended_value, quick_failure_time, quick_failure_time_after_turn, quick_failure_times };
+enum class Hook {
+  vanishes,
+  extended_value,
+  quick_failure_time,
+  quick_failure_time_after_turn,
+  quick_failure_times,
+  is_negative_of,
+  quick_value,            ///< of turning certificates
+  turning_extended_value  ///< of these, of which only the sign counts
+};
 
 /// One answer in so many is checked. The general way costs up to a hundred times as much as a quick answer.
 inline constexpr std::uint32_t answers_per_check = 1024;
@@ -66,6 +75,28 @@ void check_vanishes(const C& certificate) {
   for (const Exact& c : certificate.template polynomial<Exact>(0).c) {
     if (c.sign() != 0) refuse_answer<C>("vanishes", "is true, but its formula is not zero");
   }
+}
+
+template <class C>
+void check_is_negative_of(const C& certificate, const C& other) {
+  if (!is_to_be_checked<C, Hook::is_negative_of>()) return;
+  const auto f = certificate.template polynomial<Exact>(0), g = other.template polynomial<Exact>(0);
+  for (std::size_t i = 0; i < f.c.size(); ++i) {
+    if ((f.c[i] + g.c[i]).sign() != 0) {
+      refuse_answer<C>("is_negative_of", "is true, but the sum of the two formulas is not zero");
+    }
+  }
+}
+
+/// `sign`: that of the answer, 0 if it does not tell. general(): the sign by the formula.
+template <class C, Hook which, class General>
+void check_sign(const char* hook, int sign, double t, const General& general) {
+  if (!is_to_be_checked<C, which>() || sign == 0) return;
+  const int right = general();
+  if (sign == right) return;
+  char text[128];
+  std::snprintf(text, sizeof(text), "has the sign %d at t = %a, its formula %d", sign, t, right);
+  refuse_answer<C>(hook, text);
 }
 
 template <class C>

@@ -28,7 +28,8 @@ namespace kds {
 /// A structure that keeps no failure times to save work has the horizon `never` all the time, and its extend_horizon()
 /// does nothing. One that puts work off, such as the consequences of edits, is due for it: its process() returns a
 /// bool, false if it has done such work and no event has come of it. Then next_time() is later, or the next call gives
-/// true.
+/// true. One that has a clock of its own tells it, now(), which never is after that of the simulator: it goes forward
+/// by process(), or is moved up to the simulator's by the caller.
 template <class S>
 concept KineticStructure = requires(S& structure, const S& observed, double t) {
   { observed.next_time() } -> std::convertible_to<double>;
@@ -42,6 +43,10 @@ concept KineticStructure = requires(S& structure, const S& observed, double t) {
 ///
 /// The horizon is the simulator's: it is the same for all structures, which are told of it when the simulator is made
 /// and whenever it changes. What a structure knows of later times makes no difference.
+///
+/// A structure that is due before the clock (it was changed at an earlier time), or whose own clock is ahead (it was
+/// advanced by itself), would turn the order of events round: step(), advance_to() and next_time() throw
+/// std::logic_error, before anything is done. In the first case it can be brought up to the clock and the run goes on.
 ///
 /// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
 /// on top of the structure's own work. All times are in seconds.
@@ -80,6 +85,7 @@ class Simulator {
   /// Processes the next event if it is not later than `limit`; the clock moves to it. If there is none: false, and the
   /// clock stays where it is. Work that structures have put off until then is done on the way.
   bool step(double limit = never) {
+    require_clocks(std::index_sequence_for<Structures...>{});
     for (;;) {
       if (limit > horizon_) look_ahead(limit);
       const auto [time, index] = next();
@@ -144,8 +150,28 @@ class Simulator {
           ((s.next_time() < first.first ? void(first = {s.next_time(), index}) : void(), ++index), ...);
         },
         structures_);
+    if (first.first < now_) [[unlikely]]
+      refuse(first.second, "is due at " + std::to_string(first.first) + ": it was changed at a time before the clock");
     // A structure may know of events beyond the horizon, where others do not know of theirs.
     return first.first <= horizon_ ? first : std::pair{never, std::size_t{0}};
+  }
+
+  template <std::size_t... I>
+  void require_clocks(std::index_sequence<I...>) const {
+    (require_clock(std::get<I>(structures_), I), ...);
+  }
+  template <class Structure>
+  void require_clock(const Structure& structure, std::size_t index) const {
+    if constexpr (requires {
+                    { structure.now() } -> std::same_as<double>;
+                  }) {
+      if (const double now = structure.now(); now > now_) [[unlikely]]
+        refuse(index, "was advanced by itself to " + std::to_string(now));
+    }
+  }
+  [[noreturn]] void refuse(std::size_t index, const std::string& what) const {
+    throw std::logic_error("Simulator: the clock stands at " + std::to_string(now_) + ", and structure " +
+                           std::to_string(index) + " (in the order of the arguments, from 0) " + what);
   }
 
   /// Whether there was an event.

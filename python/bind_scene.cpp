@@ -89,7 +89,7 @@ std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const
   options.start_time = scene.begin_time;
   options.response = scene.response;
   options.broad_phase = broad_phase_named(broad_phase);
-  if (scene.domain && scene.domain->walls == Walls::reflect) {
+  if (scene.domain && scene.domain->reflects) {
     options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   auto world = hold_world({scene.degree(), scene.turning}, options, gather);

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <numeric>
 
 namespace kds::collision {
 
@@ -44,10 +43,11 @@ unsigned KineticSweepAndPrune<Degree>::best_axes(std::span<const Entry> bodies, 
     const double cost = (lengths[d] + speeds[d] * std::min(crossing, horizon_ - now)) / whole;
     return cost * (!all_listed() && is_listed(d) ? tuning_.change_below : 1.0);
   };
-  std::vector<std::size_t> order(directions);
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return promises(a) < promises(b); });
-  return 1u << order[0] | (tuning_.listed == ListedAxes::two ? 1u << order[1] : 0u);
+  std::size_t best = 0;
+  for (std::size_t d = 1; d < directions; ++d) {
+    if (promises(d) < promises(best)) best = d;
+  }
+  return 1u << best;
 }
 
 template <int Degree>

@@ -79,7 +79,6 @@ void check(const SweepTuning& tuning) {
   switch (tuning.listed) {
     case ListedAxes::automatic:
     case ListedAxes::one:
-    case ListedAxes::two:
     case ListedAxes::all:
       break;
     default:

@@ -44,7 +44,7 @@ struct SavedBodies {
                      "is none of the scene");
     }
     check_orientations(bodies, parcel.to_come);
-    typename Scripts<Motion>::Image{parcel.to_come}.check(rest.now, alive);
+    typename Scripts<Motion>::Image{parcel.to_come}.check(bodies, rest.now);
     if constexpr (turns<Motion>) {
       typename Tumbling<Motion>::Image turning;
       for (const auto& progress : parcel.turning) {

@@ -22,10 +22,7 @@ void Engine<Motion>::audit(double t) const {
     throw AuditFailure("World: sensor " + std::to_string(bodies_.id_of(sensor)) + " does not move with body " +
                        std::to_string(bodies_.id_of(owner)));
   }
-  tumbling_.audit(t);
-  if (resting_.solved()) resting_.audit(t, options_.walls.has_value());
-  pairs_.audit(t);
-  self_contacts_.audit(t);
+  parts().each([t](const auto& part) { part.audit(t); });
   if (broad_phase_->next_time() <= t) return;
   for (BodySlot a = 0; a < bodies_.slots(); ++a) {
     for (BodySlot b = a + 1; b < bodies_.slots(); ++b) {

@@ -24,6 +24,8 @@ class ContactGaps {
   ContactGaps(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock)
       : bodies_(bodies), walls_(walls), clock_(clock) {}
 
+  bool any_walls() const { return walls_.has_value(); }
+
   /// The bounding radius of the smaller of the two.
   double size(const Contact& contact) const;
   /// Whether one of the two is a wall or a half-space: the normal is the same everywhere, and nothing slides off.

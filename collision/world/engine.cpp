@@ -121,11 +121,7 @@ void Engine<Motion>::set_horizon(double limit) {
   const double window = turns<Motion> ? std::min(options_.window, farthest) : options_.window;
   clock_.horizon = std::max(limit, clock_.horizon + window);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
-  pairs_.extend_horizon();
-  walls_.extend_horizon();
-  volumes_.extend_horizon();
-  resting_.extend_horizon();
-  self_contacts_.extend_horizon();
+  parts().each([](auto& part) { part.extend_horizon(); });
 }
 
 template <class Motion>
@@ -168,71 +164,18 @@ std::size_t Engine<Motion>::part_of_work() const {
   return deadline_ ? small_part : ~std::size_t{0};
 }
 
+/// A piece of a body that precesses is over; its report ends the step.
 template <class Motion>
-inline typename Engine<Motion>::Due Engine<Motion>::next_due() const {
-  Due first{never, Task::start_pieces};
-  const auto consider = [&first](double time, Task task) {
-    if (time < first.time) first = {time, task};
-  };
-  consider(scripts_.next_time(), Task::start_pieces);
-  consider(tumbling_.next_time(), Task::turn_on);
-  consider(pairs_.next_box_time(), Task::meet_boxes);
-  consider(volumes_.next_time(), Task::renew_volume);
-  consider(timers_.next_time(), Task::ring);
-  consider(walls_.next_time(), Task::meet_wall);
-  consider(resting_.next_time(), Task::end_resting);
-  consider(pairs_.next_time(), Task::meet_or_separate);
-  consider(self_contacts_.next_time(), Task::meet_itself);
-  return first;
-}
-
-/// If the time of a task is only a bound, its part finds the exact time; true if it was a bound.
-template <class Motion>
-bool Engine<Motion>::certify(Task task) {
-  return (task == Task::meet_or_separate && pairs_.certify()) || (task == Task::meet_wall && walls_.certify());
-}
-
-/// Whether a task is an event, which changes what can be observed.
-template <class Motion>
-bool Engine<Motion>::happens(Task task) const {
-  return task != Task::renew_volume || volumes_.from_caller(volumes_.next_body());
-}
-
-/// Does a task that is due. True if it ends a step.
-template <class Motion>
-bool Engine<Motion>::process(Task task) {
-  switch (task) {
-    case Task::start_pieces:
-      start_pieces();
-      return true;
-    case Task::turn_on:
-      if constexpr (turns<Motion>) turn_on();
-      return false;  // The report ends the step.
-    case Task::meet_boxes:
-      pairs_.process_boxes();
-      return false;
-    case Task::renew_volume: {
-      const BodySlot slot = volumes_.next_body();
-      update_volume(slot, volumes_.renew(slot));
-      return volumes_.from_caller(slot);
-    }
-    case Task::ring:
-      ring();
-      return true;
-    case Task::meet_wall:
-      process_wall();
-      return true;
-    case Task::end_resting:
-      resting_.process();
-      return false;
-    case Task::meet_or_separate:
-      process_meeting();
-      return true;
-    case Task::meet_itself:
-      process_self_contact();
-      return true;
-  }
+bool Engine<Motion>::process(Tumbling<Motion>&) {
+  if constexpr (turns<Motion>) turn_on();
   return false;
+}
+
+template <class Motion>
+bool Engine<Motion>::process(Volumes<Motion>&) {
+  const BodySlot slot = volumes_.next_body();
+  update_volume(slot, volumes_.renew(slot));
+  return volumes_.from_caller(slot);
 }
 
 template <class Motion>
@@ -245,6 +188,7 @@ bool Engine<Motion>::next_event(double limit, Search search) {
   // Where it is not known that anything will happen, the broad phase runs ahead of the clock.
   double broad_phase_reached = clock_.now;
   const std::size_t part = part_of_work();
+  const auto parts = this->parts();
   for (;;) {
     if (!looks && scripts_.next_time() <= clock_.now) {  // the rest of those of which a part has been started
       start_pieces();
@@ -262,16 +206,16 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       if (late()) return true;
       continue;
     }
-    const Due due = next_due();
+    const auto due = parts.next();
     // Pending work is of this instant: all that happens at it has to be known before any of it is reported.
     const bool reports = !reports_.empty();
     // Events beyond the horizon are not known: process up to it, then extend it.
     const double next = std::min({reports ? clock_.now : limit, clock_.horizon, due.time});
     const bool is_due = due.time == next && next < never;
-    if (is_due && certify(due.task)) continue;
+    if (is_due && parts.at(due.place, [](auto& part) { return part.certify(); })) continue;
     // A piece that starts now is the motion at t+, so it starts before the broad phase runs past this time.
-    const bool piece = is_due && due.task <= Task::turn_on;
-    const double until = next == never ? broad_phase_->next_time() : piece ? next_down(next) : next;
+    const bool moves = is_due && due.is_of(Stage::motions);
+    const double until = next == never ? broad_phase_->next_time() : moves ? next_down(next) : next;
     if (until == never) {
       clock_.now = std::max(clock_.now, broad_phase_reached);
       go_back(reached);
@@ -286,14 +230,14 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       if (ran == Ran::to_a_pair || next == never) continue;
     }
     clock_.now = std::max(clock_.now, next);
-    if (reports && !(is_due && due.task <= Task::meet_boxes)) {
+    if (reports && !(is_due && due.is_of(Stage::boxes))) {
       if (!looks) report_next();
       return true;
     }
     if (is_due) {
-      if (looks && happens(due.task)) return true;
-      if (process(due.task)) return true;
-      if (due.task == Task::end_resting) reached = clock_.now;
+      if (looks && parts.at(due.place, [this](const auto& part) { return happens(part); })) return true;
+      if (parts.at(due.place, [this](auto& part) { return process(part); })) return true;
+      if (due.place == parts.template place_of<Resting>()) reached = clock_.now;  // Motions have changed.
     } else if (next < limit) {
       // Without a limit: one window farther, and if nothing happens in that either, for all time.
       set_horizon(limit == never && !looked_ahead ? clock_.horizon + options_.window : limit);

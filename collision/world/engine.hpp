@@ -21,9 +21,11 @@
 #include "collision/world/self_contacts.hpp"
 #include "collision/world/timers.hpp"
 #include "collision/world/turning/tumbling.hpp"
+#include "collision/world/turning/turning_impact.hpp"
 #include "collision/world/unbounded.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world/wall_times.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
@@ -43,16 +45,6 @@ namespace kds::collision {
 
 template <class Motion>
 struct Parcel;
-
-/// Two bodies that turn at a contact: how they move after it, the impulse on b, and the angular impulses on both.
-template <class Motion>
-struct TurningImpact {
-  Motion a, b;
-  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
-  Eigen::Vector3d turn_a = Eigen::Vector3d::Zero();
-  Eigen::Vector3d turn_b = Eigen::Vector3d::Zero();
-  bool approach = false;  ///< at the contact; if not they move as before
-};
 
 /// The implementation of a BasicWorld (world.hpp documents the public functions): it owns the parts (docs/design.md),
 /// lets the part whose event is next process it, passes the consequences on to the other parts, and calls the listener.
@@ -181,26 +173,32 @@ class Engine final : private RestingListener<BodyMotionType> {
   using Begin = typename Pairs<Motion>::Begin;
 
   // engine.cpp: the clock
-  /// The tasks of the parts of the world, in the order in which they are done if they are due at one time.
-  enum class Task {
-    start_pieces,      ///< scripts_
-    turn_on,           ///< tumbling_
-    meet_boxes,        ///< pairs_
-    renew_volume,      ///< volumes_
-    ring,              ///< timers_
-    meet_wall,         ///< walls_
-    end_resting,       ///< resting_
-    meet_or_separate,  ///< pairs_
-    meet_itself        ///< self_contacts_
-  };
-  struct Due {
-    double time;
-    Task task;
-  };
-  Due next_due() const;
-  bool certify(Task task);
-  bool happens(Task task) const;
-  bool process(Task task);
+  /// The parts, in the order in which their events are processed if they are due at one time (world_part.hpp).
+  auto parts() { return list(*this); }
+  auto parts() const { return list(*this); }
+  template <class Self>
+  static auto list(Self& self) {
+    return PartList(self.scripts_, self.tumbling_, self.pairs_.box_times(), self.volumes_, self.timers_, self.walls_,
+                    self.resting_, self.pairs_, self.self_contacts_, self.unbounded_);
+  }
+  // What follows from the next event of a part, which is due. True if it ends a step; what is only reported does so by
+  // its report.
+  bool process(Scripts<Motion>&) { return start_pieces(), true; }
+  bool process(Tumbling<Motion>&);
+  bool process(BoxTimes<detail::PairRank>&) { return pairs_.process_boxes(), false; }
+  bool process(Volumes<Motion>&);
+  bool process(Timers&) { return ring(), true; }
+  bool process(WallTimes<Motion>&) { return process_wall(), true; }
+  bool process(Resting&) { return resting_.process(), false; }
+  bool process(Pairs<Motion>&) { return process_meeting(), true; }
+  bool process(SelfContacts<Motion>&) { return process_self_contact(), true; }
+  bool process(Unbounded<Motion>&) { return false; }  // It has none.
+  /// Whether an event that is due changes what can be observed.
+  template <class Part>
+  bool happens(const Part&) const {
+    return true;
+  }
+  bool happens(const Volumes<Motion>&) const { return volumes_.from_caller(volumes_.next_body()); }
   /// Whether the search for the next event processes it, or stops before it.
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);

@@ -6,11 +6,13 @@
 #include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
+#include "collision/world/world_part.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <span>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -39,24 +41,18 @@ void check_orientations([[maybe_unused]] const typename Bodies<Motion>::Image& b
 template <class Motion>
 struct Engine<Motion>::Image {
   double now = 0, callers_now = 0, horizon = 0, looked_for_until = never;
-  bool room_for_meshes = false;
   WorldCounters counters;
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
-  typename Scripts<Motion>::Image scripts;
-  Timers::Image timers;
-  typename Tumbling<Motion>::Image tumbling;
-  typename Pairs<Motion>::Image pairs;
-  typename SelfContacts<Motion>::Image self_contacts;
-  typename Resting::Image resting;
+  typename decltype(std::declval<Engine&>().parts())::Images parts;
   std::vector<Reports::Report> pending;
 
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known) {
-    archive(now, callers_now, horizon, looked_for_until, room_for_meshes, counters, edits);
+    archive(now, callers_now, horizon, looked_for_until, counters, edits);
     bodies.archive(archive, known);
-    archive(timers);
-    if (!bodies.lent()) archive(scripts, tumbling, pairs, self_contacts, resting, pending);
+    std::apply([&](auto&... part) { (part.archive(archive), ...); }, parts);
+    if (!bodies.lent()) archive(pending);
   }
 
   /// Throws std::runtime_error, naming what is wrong, unless it may be an image of a world with these options, which
@@ -68,10 +64,9 @@ struct Engine<Motion>::Image {
     if (!std::isfinite(callers_now) || callers_now > now) image::fail("clock: is after now, or not finite");
     if (!edits.began_by(now)) image::fail("edits: are counted from a time after now");
     bodies.check(now);
-    scripts.check(now, [&](BodySlot slot) { return bodies.alive(slot); });
-    timers.check(now);
+    std::apply([&](const auto&... part) { (part.check(bodies, now, options), ...); }, parts);
+    const auto& scripts = std::get<typename Scripts<Motion>::Image>(parts);
     check_orientations(bodies, scripts.of);
-    tumbling.check(bodies, now);
     std::vector<char> enters(bodies.bodies.size());
     for (const BodySlot slot : bodies.waiting) enters[slot] = 1;
     for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
@@ -81,9 +76,6 @@ struct Engine<Motion>::Image {
       image::require(!bodies.alive(slot) || bodies.entered(slot) || enters[slot] || later || with_owner, "bodies", slot,
                      "it never enters");
     }
-    pairs.check(bodies, now, options);
-    self_contacts.check(bodies);
-    resting.check(bodies, now, options);
     check_reports(pending, bodies, now);
   }
 };

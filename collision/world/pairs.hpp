@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/profile.hpp"
 #include "collision/world/bodies.hpp"
+#include "collision/world/box_times.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/instant_edits.hpp"
 #include "collision/world/list_arena.hpp"
@@ -16,7 +17,6 @@
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
-#include "kds/events/dary_queue.hpp"
 #include "kds/large_vector.hpp"
 
 #include <cstddef>
@@ -73,6 +73,8 @@ struct PairRank {
 template <class Motion>
 class Pairs final : public PairListener {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   using Slot = detail::PairSlot;
   using Pair = detail::Pair;
   using Resting = RestingPart<Motion>;
@@ -176,9 +178,9 @@ class Pairs final : public PairListener {
   /// Precondition: certify() has returned false.
   Event take_next();
 
-  /// When boxes next meet or part, if that is to be reported and the broad phase does not report it; process_boxes()
-  /// does.
-  double next_box_time() const { return boxes_.empty() ? never : boxes_.top().time; }
+  /// When boxes next meet or part; process_boxes() reports it.
+  BoxTimes<detail::PairRank>& box_times() { return boxes_; }
+  const BoxTimes<detail::PairRank>& box_times() const { return boxes_; }
   void process_boxes() { process_boxes(boxes_.top().slot, boxes_.top().time); }
 
   void extend_horizon();
@@ -270,7 +272,7 @@ class Pairs final : public PairListener {
   LargeVector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
   LargeVector<FoundTouch> found_;             ///< by pair, if known; not valid once a motion has changed
   CalendarQueue<detail::PairRank> contacts_;  ///< slots are pairs
-  DaryQueue<detail::PairRank> boxes_;         ///< slots are pairs; used where follows_boxes_
+  BoxTimes<detail::PairRank> boxes_;          ///< slots are pairs; used where follows_boxes_
   std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list
   bool follows_boxes_ = false;                ///< whether it has to find by itself when boxes meet and part
   bool exact_ = false;

@@ -232,7 +232,8 @@ void RestingContacts<Motion>::extend_horizon() {
 /// along its normal the two have no relative velocity up to rounding, as drop_broken() measures it, and accelerations
 /// that cancel. The times at which contacts end lie ahead.
 template <class Motion>
-void RestingContacts<Motion>::audit(double t, bool walls) const {
+void RestingContacts<Motion>::audit(double t) const {
+  if (!solved()) return;
   const auto fail = [](Slot slot, const char* what) {
     throw AuditFailure("World: resting contact " + std::to_string(slot) + ": " + what);
   };
@@ -266,7 +267,7 @@ void RestingContacts<Motion>::audit(double t, bool walls) const {
       const auto& known = of_[id].contacts;
       if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
     }
-    if (at_wall && (contact.wall < 0 || contact.wall > 5 || !walls)) fail(slot, "there is no such wall");
+    if (at_wall && (contact.wall < 0 || contact.wall > 5 || !gaps_.any_walls())) fail(slot, "there is no such wall");
     if (std::abs(norm(contact.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
     if (releases_.time(slot) < t) fail(slot, "it should have ended");
     if (contact.fresh) continue;

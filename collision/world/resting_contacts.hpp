@@ -9,6 +9,7 @@
 #include "collision/world/contact_gaps.hpp"
 #include "collision/world/resting_contact.hpp"
 #include "collision/world/turning/turning_rest.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -80,6 +81,8 @@ struct RestsInPart : std::exception {
 template <class Motion>
 class RestingContacts {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   using Slot = detail::RestingSlot;
   using Contact = detail::RestingContact;
   static constexpr Slot none = ~Slot{0};
@@ -155,6 +158,7 @@ class RestingContacts {
   double next_time() const {
     return std::min(releases_.empty() ? never : releases_.top().time, spans_.empty() ? never : spans_.top().time);
   }
+  static constexpr bool certify() { return false; }
   void process();
   void extend_horizon();
 
@@ -177,8 +181,8 @@ class RestingContacts {
     return (!bodies_.fixed(a) && longest_span(a) < never) || (!bodies_.fixed(b) && longest_span(b) < never);
   }
 
-  /// Checks all contacts at a time up to which nothing is due; throws AuditFailure. `walls`: whether there are any.
-  void audit(double t, bool walls) const;
+  /// Checks all contacts, once the bodies have the motions that these allow; throws AuditFailure.
+  void audit(double t) const;
 
   /// All of it, as plain data.
   struct Image {

@@ -2,6 +2,10 @@
 
 #include "collision/motions.hpp"
 #include "collision/world/queue_room.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <string>
 
 namespace kds::collision {
 
@@ -33,6 +37,21 @@ void Scripts<Motion>::clear(BodySlot slot) {
   if (slot >= scripts_.size() || scripts_[slot].empty()) return;
   scripts_[slot] = {};
   starts_.clear(slot);
+}
+
+template <class Motion>
+void Scripts<Motion>::audit(double t) const {
+  for (BodySlot slot = 0; slot < scripts_.size(); ++slot) {
+    const auto need = [slot](bool right, const char* what) {
+      if (!right) throw AuditFailure("World: the script of the body in slot " + std::to_string(slot) + ": " + what);
+    };
+    const auto& script = scripts_[slot];
+    const double next = script.empty() ? never : path_of(script.back()).start;
+    need(next >= t, "a piece should have begun");
+    need(starts_.time(slot) == next, "the start of its next piece is not in the queue");
+    const auto later = [](const Motion& a, const Motion& b) { return path_of(a).start > path_of(b).start; };
+    need(std::is_sorted(script.begin(), script.end(), later), "its pieces are out of order");
+  }
 }
 
 template <class Motion>

@@ -6,6 +6,7 @@
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/motions.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/world_part.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <cstddef>
@@ -21,6 +22,8 @@ namespace kds::collision {
 template <class Motion>
 class Scripts {
  public:
+  static constexpr Stage stage = Stage::motions;
+
   /// Gives a body pieces to come, in order of their starts. Precondition: it has none.
   void add(BodySlot slot, std::span<const Motion> pieces);
   /// The same after those that it has. Precondition: they start later.
@@ -40,6 +43,8 @@ class Scripts {
 
   /// When the next piece begins.
   double next_time() const { return starts_.empty() ? never : starts_.top().time; }
+  static constexpr bool certify() { return false; }
+  static void extend_horizon() {}
 
   /// The motion that a body has from then on.
   struct Piece {
@@ -54,6 +59,9 @@ class Scripts {
     return take_next(0, [](BodySlot) { return false; });
   }
 
+  /// Throws AuditFailure unless the pieces of each body follow each other, and the first, at t or later, is awaited.
+  void audit(double t) const;
+
   /// All of it, as plain data: the pieces of each body, last first.
   struct Image {
     std::vector<std::vector<Motion>> of;
@@ -62,9 +70,9 @@ class Scripts {
     void archive(Archive& archive) {
       archive(of);
     }
-    /// Throws std::runtime_error, naming what is wrong. `alive(slot)`: whether there is a body.
-    template <class Alive>
-    void check(double now, const Alive& alive) const;
+    /// Throws std::runtime_error, naming what is wrong.
+    template <class BodiesImage>
+    void check(const BodiesImage& bodies, double now, const WorldOptions& = {}) const;
   };
   Image image() const { return {scripts_}; }
   void become(const Image& image);
@@ -100,11 +108,11 @@ std::vector<typename Scripts<Motion>::Piece> Scripts<Motion>::take_next(std::siz
 }
 
 template <class Motion>
-template <class Alive>
-void Scripts<Motion>::Image::check(double now, const Alive& alive) const {
+template <class BodiesImage>
+void Scripts<Motion>::Image::check(const BodiesImage& bodies, double now, const WorldOptions&) const {
   for (std::size_t slot = 0; slot < of.size(); ++slot) {
     const auto need = [slot](bool right, const char* what) { image::require(right, "scripts", slot, what); };
-    need(of[slot].empty() || alive(static_cast<BodySlot>(slot)), "is of no body");
+    need(of[slot].empty() || bodies.alive(static_cast<BodySlot>(slot)), "is of no body");
     double next = never;  // pieces are listed last first
     for (const Motion& piece : of[slot]) {
       need(piece.finite(), "a piece of motion to come is not finite");

@@ -82,7 +82,8 @@ void SelfContacts<Motion>::audit(double t) const {
 }
 
 template <class Motion>
-void SelfContacts<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies) const {
+void SelfContacts<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double,
+                                        const WorldOptions&) const {
   for (std::size_t slot = 0; slot < touching.size(); ++slot) {
     const bool may = bodies.entered(static_cast<BodySlot>(slot)) && bodies.bodies[slot].self_contacts;
     image::require(!touching[slot] || may, "self_contacts", slot, "is of no body that meets itself");

@@ -6,6 +6,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/world_part.hpp"
 #include "kds/events/dary_queue.hpp"
 
 #include <cstddef>
@@ -20,6 +21,8 @@ namespace kds::collision {
 template <class Motion>
 class SelfContacts {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   SelfContacts(const Bodies<Motion>& bodies, const Clock& clock) : bodies_(bodies), clock_(clock) {}
 
   /// A body has entered. True if it touches itself.
@@ -34,6 +37,7 @@ class SelfContacts {
 
   /// When the next contact begins or ends.
   double next_time() const { return times_.empty() ? never : times_.top().time; }
+  static constexpr bool certify() { return false; }
   /// A body begins to touch itself, or ceases to.
   struct Event {
     BodySlot slot;
@@ -57,7 +61,7 @@ class SelfContacts {
       archive(touching);
     }
     /// Throws std::runtime_error, naming what is wrong.
-    void check(const typename Bodies<Motion>::Image& bodies) const;
+    void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
   };
   Image image() const { return {touching_}; }
   /// Precondition: the bodies have been loaded.

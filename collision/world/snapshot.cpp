@@ -10,13 +10,14 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 13;
+constexpr int snapshot_form = 14;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>
@@ -49,25 +50,16 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
 
 template <class Motion>
 typename Engine<Motion>::Image Engine<Motion>::image() const {
-  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (!volumes_.from_caller(slot)) continue;
-    throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
-                                " cannot be saved: it has a box function");
-  }
+  using Parts = decltype(parts());
+  static_assert(Parts::template all_are_parts<typename Bodies<Motion>::Image> && Parts::in_order());
   return {.now = clock_.now,
           .callers_now = callers_now_,
           .horizon = clock_.horizon,
           .looked_for_until = looked_for_until_,
-          .room_for_meshes = volumes_.has_room_for_meshes(),
           .counters = counters(),
           .edits = edits_,
           .bodies = bodies_.image(),
-          .scripts = scripts_.image(),
-          .timers = timers_.image(),
-          .tumbling = tumbling_.image(),
-          .pairs = pairs_.image(),
-          .self_contacts = self_contacts_.image(),
-          .resting = resting_.image(),
+          .parts = parts().images(),
           .pending = reports_.image()};
 }
 
@@ -76,11 +68,11 @@ typename Engine<Motion>::Image Engine<Motion>::image_without_bodies(double t) co
   Image image;
   image.now = image.callers_now = t;
   image.horizon = t + options_.window;
-  image.room_for_meshes = volumes_.has_room_for_meshes();
   image.counters = counters();
   image.edits = edits_;
   image.bodies = bodies_.image_without_bodies();
-  image.timers = timers_.image();
+  std::get<Timers::Image>(image.parts) = timers_.image();
+  std::get<typename Volumes<Motion>::Image>(image.parts) = volumes_.image();
   return image;
 }
 
@@ -94,15 +86,8 @@ void Engine<Motion>::become(const Image& image) {
     idle_for_ever_ = false;
     edits_ = image.edits;
     bodies_.become(image.bodies);
-    scripts_.become(image.scripts);
-    timers_.become(image.timers);
-    tumbling_.become(image.tumbling);
-    volumes_.become(image.room_for_meshes);
     reports_.become(image.pending);
-    resting_.become(image.resting);
-    pairs_.become(image.pairs);
-    self_contacts_.become(image.self_contacts);
-    walls_.become();
+    parts().become(image.parts);
     rebuild_broad_phase();
     counters_ = image.counters;
     counters_.broad_phase = image.counters.broad_phase - broad_phase_->counters();

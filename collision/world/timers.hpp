@@ -2,8 +2,10 @@
 #pragma once
 
 #include "collision/world/image_tools.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_listener.hpp"
 #include "kds/arithmetic/lattice.hpp"
+#include "kds/audit.hpp"
 
 #include <cmath>
 #include <cstddef>
@@ -19,6 +21,8 @@ namespace kds::collision {
 /// Cost: O(log n) each.
 class Timers {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   TimerId set(double t) {
     timers_.emplace(t, next_);
     times_.emplace(next_, t);
@@ -31,11 +35,24 @@ class Timers {
   }
 
   double next_time() const { return timers_.empty() ? never : timers_.begin()->first; }
+  static constexpr bool certify() { return false; }
+  static void extend_horizon() {}
   /// Precondition: one is set.
   TimerId take_next() {
     const TimerId timer = timers_.extract(timers_.begin()).value().second;
     times_.erase(timer);
     return timer;
+  }
+
+  /// Throws AuditFailure unless each timer is known by its number and its time, which is t or later.
+  void audit(double t) const {
+    if (next_time() < t) throw AuditFailure("World: a timer should have rung");
+    bool right = timers_.size() == times_.size();
+    for (const auto& [time, timer] : timers_) {
+      const auto known = times_.find(timer);
+      right = right && known != times_.end() && known->second == time && timer < next_;
+    }
+    if (!right) throw AuditFailure("World: timers by number and by time are not the same");
   }
 
   /// All of it, as plain data.
@@ -53,7 +70,8 @@ class Timers {
       archive.each(timers, [&](One& one) { archive(one.time, one.timer); });
     }
     /// Throws std::runtime_error, naming what is wrong.
-    void check(double now) const {
+    template <class BodiesImage>
+    void check(const BodiesImage&, double now, const WorldOptions&) const {
       std::set<TimerId> numbers;
       for (std::size_t i = 0; i < timers.size(); ++i) {
         const auto key = [&](std::size_t k) { return std::pair(timers[k].time, timers[k].timer); };

@@ -5,9 +5,12 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/pairs.hpp"
+#include "collision/world/world_part.hpp"
+#include "kds/audit.hpp"
 
 #include <algorithm>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,10 +20,14 @@ namespace kds::collision {
 /// broad phase, and makes a pair with each bounded body that it may collide with, from when both have entered until one
 /// is removed. Two unbounded bodies are no pair.
 ///
+/// It has no events: which bodies these are changes when bodies enter and are removed.
+///
 /// Cost: O(1) a body that enters or leaves, for each unbounded one; nothing where there are none.
 template <class Motion>
 class Unbounded {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   Unbounded(const Bodies<Motion>& bodies, const Clock& clock, Pairs<Motion>& pairs)
       : all_(bodies), clock_(clock), pairs_(pairs) {}
 
@@ -68,6 +75,29 @@ class Unbounded {
       });
     }
   }
+
+  static constexpr double next_time() { return never; }
+  static constexpr bool certify() { return false; }
+  static void extend_horizon() {}
+  /// Throws AuditFailure unless it has all unbounded bodies, and the pairs of these are listed.
+  void audit(double) const {
+    for (BodySlot slot = 0; slot < all_.slots(); ++slot) {
+      const bool is_one = all_.entered(slot) && all_.unbounded(slot);
+      if ((std::find(slots_.begin(), slots_.end(), slot) != slots_.end()) != is_one)
+        throw AuditFailure("World: body " + std::to_string(all_.id_of(slot)) +
+                           ": whether it is unbounded is not known");
+    }
+    every_pair([&](BodySlot a, BodySlot b) {
+      if (pairs_.listed(a, b)) return;
+      throw AuditFailure("World: bodies " + std::to_string(all_.id_of(a)) + " and " + std::to_string(all_.id_of(b)) +
+                         ": one is unbounded, and the pair is not active");
+    });
+  }
+
+  /// Which bodies these are is a function of the bodies.
+  struct Image : NoImage {};
+  static Image image() { return {}; }
+  void become(const Image&) { find(); }
 
  private:
   template <class Visit>

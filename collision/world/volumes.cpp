@@ -7,12 +7,14 @@
 #include "collision/narrow_phase/kept_rotation.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
+#include "kds/audit.hpp"
 #include "kds/raised_flag.hpp"
 #include "structures/extents.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace kds::collision {
@@ -122,12 +124,19 @@ KineticBox<Motion::degree> Volumes<Motion>::renew(BodySlot slot) {
   return box(slot);
 }
 
+/// Until when the present volume contains the body; `never` if that is after the horizon.
+template <class Motion>
+double Volumes<Motion>::end(BodySlot slot) const {
+  double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
+  if (bends(slot)) until = std::min(until, bent_[slot]->until);
+  return until <= clock_.horizon ? until : never;
+}
+
 template <class Motion>
 void Volumes<Motion>::set_end(BodySlot slot) {
   if (bodies_.unbounded(slot)) return;
-  double until = from_caller(slot) ? given_[slot]->box.valid_until : clearance_until(slot);
-  if (bends(slot)) until = std::min(until, bent_[slot]->until);
-  if (until <= clock_.horizon && until < never) {
+  const double until = end(slot);
+  if (until < never) {
     make_room(ends_, bodies_.slots());
     ends_.set(slot, until);
   } else {
@@ -144,8 +153,31 @@ void Volumes<Motion>::extend_horizon() {
 }
 
 template <class Motion>
-void Volumes<Motion>::become(bool room_for_meshes) {
-  meshes_ = room_for_meshes;
+void Volumes<Motion>::audit(double t) const {
+  if (next_time() < t) throw AuditFailure("World: a bounding volume should have been renewed");
+  for (BodySlot slot = 0; slot < bodies_.slots() && any_ends(); ++slot) {
+    if (!bodies_[slot].entered || !bodies_.in_broad_phase(slot)) continue;
+    if ((slot < ends_.slots() ? ends_.time(slot) : never) == end(slot)) continue;
+    throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) +
+                       ": the end of its bounding volume is not in the queue");
+  }
+}
+
+template <class Motion>
+typename Volumes<Motion>::Image Volumes<Motion>::image() const {
+  for (BodySlot slot = 0; slot < given_.size(); ++slot) {
+    if (!given_[slot]) continue;
+    throw std::invalid_argument("World: body " + std::to_string(bodies_.id_of(slot)) +
+                                " cannot be saved: it has a box function");
+  }
+  Image image;
+  image.room_for_meshes = meshes_;
+  return image;
+}
+
+template <class Motion>
+void Volumes<Motion>::become(const Image& image) {
+  meshes_ = image.room_for_meshes;
   given_.clear();
   bent_.clear();
   ends_.resize(0);

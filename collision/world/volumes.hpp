@@ -10,6 +10,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/turning/turning_extents.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
 
@@ -33,6 +34,8 @@ namespace kds::collision {
 template <class Motion>
 class Volumes {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   using BoxFunction = typename BasicBodyDescription<Motion>::BoxFunction;
   using Box = KineticBox<Motion::degree>;
 
@@ -87,10 +90,24 @@ class Volumes {
   /// When the next box has to be renewed, and of which body. Precondition of next_body(): next_time() < never.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
   BodySlot next_body() const { return ends_.top().slot; }
+  static constexpr bool certify() { return false; }
   void extend_horizon();
+  /// Throws AuditFailure unless the volume of each body in the broad phase is renewed when it ceases to contain it.
+  void audit(double t) const;
 
-  /// The state after loading: no body's volume is a caller's. Those of all bodies are scheduled with schedule().
-  void become(bool room_for_meshes);
+  /// All that is not a function of the bodies.
+  struct Image : NoImage {
+    bool room_for_meshes = false;
+
+    template <class Archive>
+    void archive(Archive& archive) {
+      archive(room_for_meshes);
+    }
+  };
+  /// Throws std::invalid_argument if a body has a box function, which cannot be saved.
+  Image image() const;
+  /// No body's volume is a caller's. Those of all bodies are scheduled with schedule().
+  void become(const Image& image);
 
  private:
   struct Given {
@@ -105,6 +122,7 @@ class Volumes {
   Box bare_box(BodySlot slot) const;
   Box rigid_box(BodySlot slot) const;
   bool is_round(BodySlot slot) const;
+  double end(BodySlot slot) const;
   void set_end(BodySlot slot);
   void note_shape(BodySlot slot);
   void place_extents(BodySlot slot);

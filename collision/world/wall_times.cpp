@@ -5,9 +5,11 @@
 #include "collision/motions.hpp"
 #include "collision/world/earliest_wall_time.hpp"
 #include "collision/world/queue_room.hpp"
+#include "kds/audit.hpp"
 
 #include <algorithm>
 #include <array>
+#include <string>
 
 namespace kds::collision {
 
@@ -79,7 +81,25 @@ void WallTimes<Motion>::extend_horizon() {
 }
 
 template <class Motion>
-void WallTimes<Motion>::become() {
+void WallTimes<Motion>::audit(double t) const {
+  if (!walls_) return;
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (!bodies_[slot].entered || bodies_[slot].sensor || bodies_.unbounded(slot)) continue;
+    const double known = slot < times_.slots() ? times_.time(slot) : never;
+    const auto fail = [&](int wall, const char* what) {
+      throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) + " and wall " + std::to_string(wall) +
+                         ": " + what);
+    };
+    if (known < t && wall_[slot] != none_yet) fail(wall_[slot], "it should have been reached");
+    for (int wall = 0; wall < 6; ++wall) {
+      const double time = exact_time(slot, wall, clock_.horizon);
+      if (time < never && time < known) fail(wall, "it is reached before the body's time");
+    }
+  }
+}
+
+template <class Motion>
+void WallTimes<Motion>::become(const Image&) {
   forget_all();
   extend_horizon();
 }

@@ -5,6 +5,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/calendar_queue.hpp"
 
@@ -24,6 +25,8 @@ namespace kds::collision {
 template <class Motion>
 class WallTimes {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   using Entry = typename BroadPhase<Motion::degree>::Entry;
 
   WallTimes(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock)
@@ -44,14 +47,18 @@ class WallTimes {
   /// The wall that the next body reaches then. Precondition: certify() has returned false.
   int next_wall() const { return wall_[next_body()]; }
   void extend_horizon();
+  /// Throws AuditFailure if a body reaches a wall before its time, or should have reached one before t.
+  void audit(double t) const;
 
   /// Forgets all times.
   void forget_all() {
     times_.resize(0);
     wall_.clear();
   }
-  /// All bodies have been replaced. Times are not saved or loaded: they are functions of the motions.
-  void become();
+  /// Times are not saved or loaded: they are functions of the motions.
+  struct Image : NoImage {};
+  static Image image() { return {}; }
+  void become(const Image& = {});
 
  private:
   static constexpr signed char none_yet = -1;

@@ -53,7 +53,7 @@ void check_range(const SceneBody& body, const Scene& scene, const MemberPath& pa
 
 void check_motion(const SceneBody& body, const Scene& scene, const MemberPath& path) {
   check_range(body, scene, path);
-  if (scene.domain && scene.domain->walls == Walls::reflect && !body.sensor) {
+  if (scene.domain && scene.domain->reflects && !body.sensor) {
     check_inside_walls(body, *scene.domain, path);
   }
 }

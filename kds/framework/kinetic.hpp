@@ -224,7 +224,10 @@ class Kinetic final : public KineticOf<Rule>, private MovingSet<typename Rule::E
     if constexpr (TellsItsNegative<C>) {
       if (failed_ == nullptr) return false;
       detail::with_certificate(*failed_, [&](const auto& failed) {
-        if constexpr (std::same_as<decltype(failed), const C&>) turned = certificate.is_negative_of(failed);
+        if constexpr (std::same_as<decltype(failed), const C&>) {
+          turned = certificate.is_negative_of(failed);
+          if (turned) detail::check_is_negative_of(certificate, failed);
+        }
       });
     }
     return turned;

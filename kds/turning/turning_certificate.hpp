@@ -41,11 +41,28 @@ concept TurningCertificate = requires(const C& certificate, double epoch) {
 };
 
 /// Hook: `Ball<double> quick_value(double t) const`, a ball that holds f(t) times any positive number, got for less
-/// than turning_sum<Ball<double>, 0>(t) takes. It spares work and changes no sign.
+/// than turning_sum<Ball<double>, 0>(t) takes. It spares work and changes no sign. What
+/// extended_value() (certificate_hooks.hpp) gives of a turning certificate may be times any positive number, too. A
+/// member with one of these names that is not exactly what its concept asks for does not compile, and on a sample of
+/// calls the signs of both are compared with that of the formula (hook_checks.hpp).
 template <class C>
 concept GivesQuickValue = requires {
   static_cast<Ball<double> (C::*)(double) const>(&C::quick_value);
 };
+
+namespace detail {
+
+KDS_MEMBER_NAMED(NamesQuickValue, quick_value);
+
+/// As RightHooks, which it includes, for turning certificates.
+template <class C>
+struct RightTurningHooks {
+  static_assert(GivesQuickValue<C> || !NamesQuickValue<C>,
+                "certificate: `quick_value` must be `Ball<double> quick_value(double t) const`");
+  static constexpr bool checked = RightHooks<C>::checked;
+};
+
+}  // namespace detail
 
 /// How often the cheaper rungs of the ladder of turning certificates did not decide. One set a thread; reset by
 /// assigning {}.
@@ -110,11 +127,21 @@ Number turning_derivative(const TurningReference<Degree, Harmonics>& certificate
                         spins[1].template turn<Number>(t));
 }
 
+/// The sign of f at t by its formula, without counting. For checks of what hooks answer.
+template <int Degree, int Harmonics>
+int general_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t);
+
 /// f at t, times any positive number, got the cheapest way.
 template <class C>
 Ball<double> turning_value_in_doubles(const C& certificate, double t) {
+  static_assert(RightTurningHooks<C>::checked);
   if constexpr (GivesQuickValue<C>) {
-    return certificate.quick_value(t);
+    const Ball<double> value = certificate.quick_value(t);
+    if constexpr (checks_quick_answers) {
+      check_sign<C, Hook::quick_value>("quick_value", certain_sign(value), t,
+                                       [&] { return general_turning_sign(TurningReference(certificate), t); });
+    }
+    return value;
   } else {
     return turning_value<Ball<double>>(certificate, t);
   }
@@ -123,8 +150,14 @@ Ball<double> turning_value_in_doubles(const C& certificate, double t) {
 /// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one.
 template <class C>
 Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
+  static_assert(RightTurningHooks<C>::checked);
   if constexpr (GivesExtendedValue<C>) {
     const Ball<DoubleDouble> value = certificate.extended_value(t);
+    if constexpr (checks_quick_answers) {
+      check_sign<C, Hook::turning_extended_value>("extended_value", certain_sign(value), t, [&] {
+        return general_turning_sign(TurningReference(certificate), t);
+      });
+    }
     if (certain_sign(value) != 0) return value;
   }
   return turning_value<Ball<DoubleDouble>>(certificate, t);
@@ -153,6 +186,15 @@ int exact_turning_sign(const TurningReference<Degree, Harmonics>& certificate, d
     return 0;
   }
   return enclosed_sign(f, spins, t);
+}
+
+template <int Degree, int Harmonics>
+int general_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t) {
+  const TurningSignCounters counters = turning_sign_counters;
+  int sign = certain_sign(turning_value<Ball<DoubleDouble>>(certificate, t));
+  if (sign == 0) sign = exact_turning_sign(certificate, t, 0);
+  turning_sign_counters = counters;
+  return sign;
 }
 
 /// sign_at() of f where doubles do not tell, and of its derivatives.
@@ -209,6 +251,7 @@ int sign_after(const C& certificate, double t, int derivative) {
 }
 
 #define KDS_TURNING_SIGNS(prefix, ...)                                                           \
+  prefix int detail::general_turning_sign(const TurningReference<__VA_ARGS__>&, double);         \
   prefix int detail::longer_turning_sign(const TurningReference<__VA_ARGS__>&, double, int);     \
   prefix int detail::turning_sign_after_zero(const TurningReference<__VA_ARGS__>&, double, int); \
   prefix bool detail::vanishes(const TurningReference<__VA_ARGS__>&, int);

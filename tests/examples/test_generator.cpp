@@ -97,7 +97,7 @@ TEST_CASE("generator: every kind is as the paper's experiment asks") {
   CHECK(scene.end_time == 1);
   CHECK(scene.response == Response::elastic);
   REQUIRE(scene.domain);
-  CHECK(scene.domain->walls == Walls::reflect);
+  CHECK(scene.domain->reflects);
 
   double volume = 0;
   double mean_radius = 0;

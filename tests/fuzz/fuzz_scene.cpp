@@ -33,7 +33,7 @@ void check_accepted(const Scene& scene) {
   collision::WorldOptions options;
   options.start_time = scene.begin_time;
   options.response = scene.response;
-  if (scene.domain && scene.domain->walls == kds::io::Walls::reflect) {
+  if (scene.domain && scene.domain->reflects) {
     options.walls = collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
   collision::BasicWorld<Motion> world(options);

@@ -70,7 +70,7 @@ inline Scene random_scene(std::uint64_t seed) {
   scene.end_time = 3;
   scene.response = random.one_in(4) ? Response::none : Response::elastic;
   if (falls || random.one_in(2)) {
-    scene.domain = Domain{Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(side + 1), Walls::reflect};
+    scene.domain = Domain{Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(side + 1), true};
   }
   return scene;
 }

@@ -51,7 +51,7 @@ Scene lattice() {
   }
   scene.end_time = 4;
   scene.response = Response::elastic;
-  scene.domain = Domain{Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1.5 * side), Walls::reflect};
+  scene.domain = Domain{Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1.5 * side), true};
   return scene;
 }
 

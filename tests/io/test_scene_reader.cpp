@@ -28,7 +28,7 @@ TEST_CASE("scene reader: a valid scene is read as it says") {
   CHECK(scene.response == Response::none);
   REQUIRE(scene.domain);
   CHECK(scene.domain->max == Eigen::Vector3d(80, 80, 80));
-  CHECK(scene.domain->walls == Walls::reflect);
+  CHECK(scene.domain->reflects);
   REQUIRE(scene.bodies.size() == 3);
   CHECK(scene.degree() == 2);
 

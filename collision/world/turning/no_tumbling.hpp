@@ -3,6 +3,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/world/bodies.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -16,12 +17,16 @@ class Tumbling;
 template <class Motion>
 requires(!turns<Motion>) class Tumbling<Motion> {
  public:
+  static constexpr Stage stage = Stage::motions;
+
   Tumbling(const Bodies<Motion>&, const WorldOptions&, const WorldCounters&) {}
 
   static void remove(BodySlot) {}
   static bool has(BodySlot) { return false; }
   static const Motion& take_up(BodySlot, const Motion& given, double) { return given; }
   static constexpr double next_time() { return never; }
+  static constexpr bool certify() { return false; }
+  static void extend_horizon() {}
   /// Of Tumbling: the motion that a body has from then on.
   struct Piece {
     BodySlot slot;
@@ -44,11 +49,7 @@ requires(!turns<Motion>) class Tumbling<Motion> {
   static void go_on() {}
 
   /// Of Tumbling: all of it, as plain data. There is none.
-  struct Image {
-    template <class Archive>
-    void archive(Archive&) {}
-    void check(const typename Bodies<Motion>::Image&, double) const {}
-  };
+  struct Image : NoImage {};
   static Image image() { return {}; }
   static void become(const Image&) {}
 };

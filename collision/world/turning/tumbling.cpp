@@ -214,7 +214,8 @@ void Tumbling<Motion>::audit(double t) const {
 }
 
 template <class Motion>
-void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now) const {
+void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now,
+                                    const WorldOptions&) const {
   for (BodySlot slot = 0; slot < bodies.bodies.size(); ++slot) {
     image::require(!bodies.alive(slot) || bodies.bodies[slot].tumbles == (slot < of.size() && of[slot]), "tumbling",
                    slot, "is of no body, or missing");

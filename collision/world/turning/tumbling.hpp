@@ -7,6 +7,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/turning/no_tumbling.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
 #include "kds/events/dary_queue.hpp"
@@ -75,6 +76,8 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 template <class Motion>
 class Tumbling {
  public:
+  static constexpr Stage stage = Stage::motions;
+
   using Body = detail::Tumbler<Motion>;
 
   Tumbling(Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
@@ -96,6 +99,8 @@ class Tumbling {
 
   /// When the next piece begins.
   double next_time() const { return ends_.empty() ? never : ends_.top().time; }
+  static constexpr bool certify() { return false; }
+  static void extend_horizon() {}
   /// The motion that a body has from then on.
   struct Piece {
     BodySlot slot;
@@ -186,7 +191,7 @@ class Tumbling {
       archive(of);
     }
     /// Throws std::runtime_error, naming what is wrong.
-    void check(const typename Bodies<Motion>::Image& bodies, double now) const;
+    void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& = {}) const;
   };
   Image image() const { return {of_}; }
   void become(const Image& image);

@@ -9,6 +9,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contact.hpp"
+#include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -76,6 +77,8 @@ void archive_members(Archive& archive, LyingPair& pair) {
 template <class Motion>
 class TurningRest {
  public:
+  static constexpr Stage stage = Stage::reported;
+
   using Slot = std::uint32_t;
   using Contact = detail::RestingContact;
   static constexpr Slot none = ~Slot{0};
@@ -126,11 +129,12 @@ class TurningRest {
   /// Gives bodies that have woken their motions.
   void solve();
 
-  double next_time() const { return never; }
-  void process() {}
-  void extend_horizon() {}
+  static constexpr double next_time() { return never; }
+  static constexpr bool certify() { return false; }
+  static void process() {}
+  static void extend_horizon() {}
   /// Throws AuditFailure unless bodies that rest do not move, and rest on something.
-  void audit(double t, bool walls) const;
+  void audit(double t) const;
 
   /// How impulses that were too small to wake a body at rest would make it move if it lay on nothing.
   struct Ignored {

@@ -3,6 +3,7 @@
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/deforming/brute_sheets.hpp"
+#include "tests/collision/deforming/folded_strip.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/collision/sample_sheets.hpp"
@@ -29,25 +30,6 @@ BodyDescription<1> sheet_of(const Keyframes& keyframes, const samples::Sheet& sh
           .motion = {Path::line(Vector3d(1, 2, 3), Vector3d(5, 0, 0))},
           .self_contacts = true};
 }
-
-/// A strip, of which one end is lifted over the middle and comes down on it at t = 2.5, is all through it at 2.625, and
-/// goes back from 3 on, the same way.
-struct Fold {
-  samples::Sheet sheet{4};
-  Keyframes keyframes;
-
-  Fold() {
-    const auto lifted = with_end({0, 0, 1}), over = with_end({-1.25, 0, 1}), down = with_end({-1.25, 0, -1});
-    keyframes = {{0, sheet.positions}, {1, lifted}, {2, over}, {3, down}, {4, over}, {5, lifted}};
-  }
-  /// The row of vertices at x = 1 is moved, and that at x = 1 / 2 lifted.
-  std::vector<Vector3d> with_end(const Vector3d& way) const {
-    auto positions = sheet.positions;
-    for (std::size_t v = 15; v < 20; ++v) positions[v][2] = 0.5;
-    for (std::size_t v = 20; v < 25; ++v) positions[v] += way;
-    return positions;
-  }
-};
 
 /// The least distance of two features without a common vertex; 0 where an edge goes through such a face.
 Long self_distance(const std::vector<LongVector>& v, const std::vector<Mesh::Triangle>& triangles) {

@@ -9,6 +9,8 @@
 #include <catch2/catch.hpp>
 
 #include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace kds::collision::test_in_simulator {
@@ -210,6 +212,55 @@ TEST_CASE("To look for what never comes, or to run until nothing comes, changes 
     }
     CHECK(met > 40);
   }
+}
+
+TEST_CASE("A world that is changed before the clock of its simulator has to be brought up to it",
+          "[world][simulator]") {
+  EventLog<1> log, log_alone;
+  World<1> world(with_response(Response::elastic), &log), alone(with_response(Response::elastic), &log_alone);
+  World<1> idle{WorldOptions{}};
+  for (World<1>* each : {&world, &alone}) {
+    each->add_body(ball<1>(1, zero));
+    each->add_body(ball<1>(1, {9, 0, 0}));
+  }
+  Simulator simulator(0, idle, world);
+  simulator.advance_to(2);
+  REQUIRE(world.now() == 0);
+  for (World<1>* each : {&world, &alone}) each->update_motion(1, motion<1>({9, 0, 0}, {-1, 0, 0}));
+  const std::string refused =
+      "Simulator: the clock stands at 2.000000, and structure 1 (in the order of the arguments, from 0) is due at "
+      "0.000000: it was changed at a time before the clock";
+  CHECK_THROWS_WITH(simulator.step(), refused);
+  CHECK_THROWS_WITH(simulator.step(9), refused);
+  CHECK_THROWS_WITH(simulator.advance_to(9), refused);
+  CHECK_THROWS_WITH(simulator.next_time(), refused);
+  CHECK_THROWS_AS(simulator.advance_to(3), std::logic_error);
+  CHECK(simulator.now() == 2);
+  CHECK(world.now() == 0);
+
+  world.advance_to(2);
+  simulator.advance_to(9);
+  alone.advance_to(9);
+  REQUIRE(log.events.size() == 1);
+  CHECK(log.events[0].time() == 7);
+  CHECK(log.events == log_alone.events);
+}
+
+TEST_CASE("A world that is ahead of the clock of its simulator is refused", "[world][simulator]") {
+  World<1> idle{WorldOptions{}}, world{WorldOptions{}};
+  world.add_body(ball<1>(1, zero, {1, 0, 0}));
+  Simulator simulator(0, world, idle);
+  simulator.advance_to(2);
+  world.advance_to(2);
+  CHECK_NOTHROW(simulator.advance_to(3));  // up to the clock is no further
+  world.advance_to(5);
+  const std::string refused =
+      "Simulator: the clock stands at 3.000000, and structure 0 (in the order of the arguments, from 0) was advanced "
+      "by "
+      "itself to 5.000000";
+  CHECK_THROWS_WITH(simulator.step(), refused);
+  CHECK_THROWS_WITH(simulator.advance_to(9), refused);
+  CHECK(simulator.now() == 3);
 }
 
 TEST_CASE("A world and a triangulation are rolled back together", "[world][simulator][history]") {

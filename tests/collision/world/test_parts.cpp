@@ -435,7 +435,7 @@ TEST_CASE("Resting contacts: a ball that is pressed on a fixed box stays, and sl
   REQUIRE(std::find(parts.taken_up.begin(), parts.taken_up.end(), resting) != parts.taken_up.end());
   CHECK(parts.bodies.motion(resting).coefficients[2].isZero(0));
   CHECK(parts.bodies.motion(resting).coefficients[1] == Vector3d(1, 0, 0));
-  parts.resting.audit(0, false);
+  parts.resting.audit(0);
   const double off = parts.resting.next_time();
   CHECK(off > 4);  // round the edge, until it is a slack away
   CHECK(off < 4.01);
@@ -453,7 +453,7 @@ TEST_CASE("Resting contacts: a body that jumps has none any more") {
   parts.resting.add({.a = floor, .b = resting, .normal = Vector3d(0, 0, 1)});
   parts.resting.disturb(resting);
   parts.resting.solve();
-  parts.resting.audit(0, false);
+  parts.resting.audit(0);
   parts.resting.drop_all(resting);
   CHECK(parts.resting.empty());
   CHECK(parts.resting.find(floor, resting) == RestingContacts<PointMotion<2>>::none);

@@ -1,0 +1,18 @@
+// What follows from a contact of bodies that turn.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace kds::collision {
+
+/// Two bodies that turn at a contact: how they move after it, the impulse on b, and the angular impulses on both.
+template <class Motion>
+struct TurningImpact {
+  Motion a, b;
+  Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d turn_b = Eigen::Vector3d::Zero();
+  bool approach = false;  ///< at the contact; if not they move as before
+};
+
+}  // namespace kds::collision

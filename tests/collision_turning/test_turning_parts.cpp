@@ -1,0 +1,315 @@
+// The parts of a world that are about bodies that turn, each by itself.
+#include "collision/world/bodies_image.hpp"
+#include "collision/world/resting_contacts.hpp"
+#include "collision/world/turning/tumbling.hpp"
+#include "collision/world/turning/turning_rest.hpp"
+#include "kds/audit.hpp"
+#include "tests/collision/world/through_bytes.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <memory>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace kds::collision::test_turning_parts {
+namespace {
+
+using Catch::Contains;
+using certificates::RigidMotion;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using tests::through_bytes;
+
+template <int Degree>
+using Description = BasicBodyDescription<RigidMotion<Degree>>;
+
+/// Adds a body that has entered.
+template <int Degree>
+BodySlot add(Bodies<RigidMotion<Degree>>& bodies, const Description<Degree>& description) {
+  auto shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
+  const BodySlot slot = bodies.add(description, std::move(shape), description.motion.front());
+  bodies[slot].entered = true;
+  return slot;
+}
+
+/// Bodies that precess.
+struct Spinning {
+  using Motion = RigidMotion<1>;
+
+  WorldOptions options;
+  WorldCounters counters;
+  Bodies<Motion> bodies;
+  Tumbling<Motion> tumbling{bodies, options, counters};
+
+  static Motion motion() {
+    Motion motion{{{Vector3d(1, 2, 3), Vector3d(0.5, 0, 0)}}};
+    motion.angular_velocity = Vector3d(3, 0.2, -0.1);
+    return motion;
+  }
+  /// One that turns about its middle axis, nearly, and so does not do so for long.
+  BodySlot add() {
+    const BodySlot slot = test_turning_parts::add<1>(bodies, {.shape = Box{{1, 2, 3}}, .motion = {motion()}});
+    bodies[slot].tumbles = true;
+    bodies[slot].entered = false;  // or it would go on with the piece that it has
+    tumbling.add(slot, principal_inertia(Vector3d(2, 1, 3).asDiagonal()));
+    bodies.move(slot, tumbling.take_up(slot, motion(), 0));
+    bodies[slot].entered = true;
+    return slot;
+  }
+  /// Takes the next piece of some body.
+  BodySlot turn_on() {
+    const auto piece = tumbling.take_next();
+    bodies.move(piece.slot, piece.motion);
+    return piece.slot;
+  }
+};
+
+/// Bodies that may come to rest, with a record of what they are told.
+struct Lying final : RestingListener<RigidMotion<2>> {
+  using Motion = RigidMotion<2>;
+  static constexpr double gravity = 10;
+
+  WorldOptions options;
+  Clock clock;
+  Bodies<Motion> bodies;
+  TurningRest<Motion> rest{bodies, options, clock, *this};
+  BodySlot floor = add<2>(bodies, {.shape = Box{{9, 9, 1}}, .motion = {at({0, 0, -1}, 0)}, .fixed = true});
+  std::vector<BodySlot> taken_up;
+  std::vector<std::tuple<bool, BodySlot, BodySlot>> told;  ///< begins or ends, of whom
+
+  void take_up(BodySlot slot, const Motion& motion) override {
+    bodies.move(slot, motion);
+    taken_up.push_back(slot);
+  }
+  void changed(BodySlot, BodySlot) override {}
+  void let_pass(BodySlot, BodySlot) override {}
+  void tell_rebound_suppressed(BodySlot, BodySlot) override {}
+  void tell_resting(bool begins, const detail::RestingContact& contact) override {
+    told.emplace_back(begins, contact.a, contact.b);
+  }
+  void tell_passes(const detail::RestingContact&) override {}
+
+  static Motion at(const Vector3d& position, double pull, double start = 0) {
+    return {{{position, Vector3d::Zero(), Vector3d(0, 0, -pull / 2)}, start}};
+  }
+  /// A ball that touches the floor.
+  BodySlot add_ball(double x) {
+    const BodySlot slot = add<2>(
+        bodies,
+        {.shape = Sphere{1}, .motion = {at({x, 0, 1}, gravity)}, .inertia = 0.4, .restitution = 0.3, .friction = 0.5});
+    bodies.accelerate_freely(slot, bodies.motion(slot));
+    return slot;
+  }
+  /// A ball touches the floor again, after a flight that was too short to see, at this multiple of the shortest flight.
+  bool touch(BodySlot ball, double flights) {
+    clock.now = flights * options.shortest_flight;
+    const double x = bodies.path(ball).coefficients[0][0];
+    if (!rest.carries(ball)) bodies.move(ball, at({x, 0, 1}, gravity, clock.now));
+    return rest.comes_to_rest(floor, ball, {.time = clock.now, .point = {x, 0, 0}, .normal = {0, 0, 1}});
+  }
+  bool is_still(BodySlot slot) const {
+    const auto& c = bodies.path(slot).coefficients;
+    return c[1].isZero(0) && c[2].isZero(0) && bodies.motion(slot).angular_velocity.isZero(0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("Tumbling: piece after piece, each where the one before ends, near the free rotation", "[turning]") {
+  Spinning part;
+  CHECK(part.tumbling.next_time() == never);
+  const BodySlot slot = part.add();
+  const Vector3d momentum = part.tumbling.turning(slot, 0).angular_momentum;
+  double last = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double t = part.tumbling.next_time();
+    REQUIRE(t > last);
+    REQUIRE(t < never);
+    CHECK_NOTHROW(part.tumbling.audit(t));
+    const Quaterniond before = part.bodies.motion(slot).restarted(t).orientation;
+    REQUIRE(part.turn_on() == slot);
+    CHECK(part.bodies.path(slot).start == t);
+    CHECK(part.bodies.motion(slot).orientation.angularDistance(before) < 1e-12);
+    CHECK(part.tumbling.turning(slot, t).angular_momentum == momentum);  // to the bit
+    CHECK_NOTHROW(part.tumbling.audit(t));
+    last = t;
+  }
+  CHECK(part.counters.rotation_pieces == 200);
+  part.tumbling.remove(slot);
+  CHECK_FALSE(part.tumbling.has(slot));
+  CHECK(part.tumbling.next_time() == never);
+}
+
+TEST_CASE("Tumbling: of pieces that end at one time the body with the lowest slot takes its next first", "[turning]") {
+  Spinning part;
+  const BodySlot a = part.add(), b = part.add(), c = part.add();
+  for (int i = 0; i < 20; ++i) {
+    const double t = part.tumbling.next_time();
+    for (const BodySlot slot : {a, b, c}) {
+      REQUIRE(part.tumbling.next_time() == t);
+      REQUIRE(part.turn_on() == slot);
+    }
+    CHECK(part.bodies.motion(a) == part.bodies.motion(c));
+  }
+}
+
+TEST_CASE("Tumbling: the audit finds a piece that is over, and a body that is turned otherwise", "[turning]") {
+  Spinning part;
+  const BodySlot slot = part.add();
+  const double ends = part.tumbling.next_time();
+  CHECK_THROWS_WITH(part.tumbling.audit(next_up(ends)), Contains("body 0: its piece of rotation is over"));
+  auto motion = part.bodies.motion(slot);
+  motion.orientation = Quaterniond(0, 1, 0, 0);
+  part.bodies.move(slot, motion);
+  CHECK_THROWS_WITH(part.tumbling.audit(0), Contains("body 0: it is off its free rotation"));
+}
+
+TEST_CASE("Tumbling: a copy goes on alike, and an image without one of its bodies is refused", "[turning]") {
+  Spinning part, copy;
+  part.add(), part.add();
+  for (int i = 0; i < 5; ++i) part.turn_on();
+  copy.add(), copy.add();
+  for (const BodySlot slot : {0u, 1u}) copy.bodies.move(slot, part.bodies.motion(slot));
+  const double now = part.bodies.path(0).start;
+  auto image = through_bytes(part.tumbling.image());
+  CHECK_NOTHROW(image.check(part.bodies.image(), now));
+  copy.tumbling.become(image);
+  copy.tumbling.audit(now);
+  for (int i = 0; i < 40; ++i) {
+    REQUIRE(copy.tumbling.next_time() == part.tumbling.next_time());
+    const BodySlot slot = part.turn_on();
+    REQUIRE(copy.turn_on() == slot);
+    CHECK(copy.bodies.motion(slot) == part.bodies.motion(slot));
+  }
+  image.of[1].reset();
+  CHECK_THROWS_WITH(image.check(part.bodies.image(), now), Contains("tumbling[1]: is of no body, or missing"));
+}
+
+TEST_CASE("Tumbling: a body that was left alone has the piece that it would have otherwise", "[turning]") {
+  Spinning watched, part;
+  const BodySlot slot = watched.add();
+  part.add();
+  const double until = 2;
+  while (watched.tumbling.next_time() < until) watched.turn_on();
+  REQUIRE(part.tumbling.next_time() < until);
+  REQUIRE(part.tumbling.can_leave_alone(slot, until));
+  part.tumbling.leave_alone(slot, until);
+  CHECK(part.tumbling.is_alone(slot));
+  CHECK(part.tumbling.next_time() == until);
+  part.bodies.move(slot, part.tumbling.catch_up(slot, until));
+  CHECK_FALSE(part.tumbling.any_alone());
+  CHECK(part.bodies.motion(slot) == watched.bodies.motion(slot));
+  CHECK(part.tumbling.next_time() == watched.tumbling.next_time());
+  CHECK(part.counters.rotation_pieces == watched.counters.rotation_pieces);
+  part.tumbling.audit(until);
+}
+
+TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm for eight flights", "[turning]") {
+  Lying part;
+  const BodySlot ball = part.add_ball(0);
+  for (int flight = 0; flight < 8; ++flight) REQUIRE_FALSE(part.touch(ball, flight));
+  CHECK(part.rest.empty());
+  CHECK_FALSE(part.rest.remembers_nothing());
+  REQUIRE(part.touch(ball, 8.5));
+  CHECK(part.rest.holds(part.floor, ball));
+  CHECK(part.rest.carries(ball));
+  CHECK_FALSE(part.rest.carries(part.floor));
+  CHECK(part.is_still(ball));
+  CHECK(part.taken_up == std::vector{ball});
+  CHECK(part.told == std::vector{std::tuple(true, part.floor, ball)});
+  CHECK(part.rest.partners(ball) == std::vector{part.floor});
+  CHECK(part.rest.next_time() == never);
+  part.rest.audit(part.clock.now);
+
+  part.rest.drop_all(part.floor);
+  CHECK_FALSE(part.rest.solved());
+  part.rest.solve();
+  CHECK(part.rest.empty());
+  CHECK(part.rest.remembers_nothing());
+  CHECK(part.bodies.path(ball).coefficients[2] == Vector3d(0, 0, -Lying::gravity / 2));
+  CHECK(part.told.back() == std::tuple(false, part.floor, ball));
+}
+
+TEST_CASE("Rest of bodies that turn: one that moves is not calm, and has to be calm anew", "[turning]") {
+  Lying part;
+  const BodySlot ball = part.add_ball(0);
+  for (int flight = 0; flight < 8; ++flight) REQUIRE_FALSE(part.touch(ball, flight));
+  auto fast = part.bodies.motion(ball);
+  fast.path.coefficients[1][0] = 1;
+  part.bodies.move(ball, fast);
+  CHECK_FALSE(part.rest.comes_to_rest(part.floor, ball, {.time = part.clock.now, .normal = {0, 0, 1}}));
+  CHECK(part.rest.remembers_nothing());
+  for (int flight = 9; flight < 17; ++flight) CHECK_FALSE(part.touch(ball, flight));
+  CHECK(part.touch(ball, 17.5));
+}
+
+TEST_CASE("Rest of bodies that turn: what wakes together gets its motions by slot", "[turning]") {
+  Lying part;
+  const std::vector balls{part.add_ball(-3), part.add_ball(0), part.add_ball(3)};
+  for (const BodySlot ball : {balls[2], balls[0], balls[1]}) {
+    for (int flight = 0; flight <= 9; ++flight) part.touch(ball, flight);
+    REQUIRE(part.rest.carries(ball));
+  }
+  part.taken_up.clear();
+  part.rest.drop_all(part.floor);
+  part.rest.solve();
+  CHECK(part.taken_up == balls);
+}
+
+TEST_CASE("Rest of bodies that turn: a copy comes to rest when the first does", "[turning]") {
+  Lying part, copy;
+  const BodySlot ball = part.add_ball(0);
+  copy.add_ball(0);
+  for (int flight = 0; flight < 5; ++flight) part.touch(ball, flight);
+  copy.clock = part.clock;
+  copy.bodies.move(ball, part.bodies.motion(ball));
+  const auto image = through_bytes(part.rest.image());
+  CHECK_NOTHROW(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}));
+  copy.rest.become(image);
+  for (Lying* each : {&part, &copy}) {
+    for (int flight = 5; flight < 8; ++flight) REQUIRE_FALSE(each->touch(ball, flight));
+    REQUIRE(each->touch(ball, 8.5));
+    each->rest.audit(each->clock.now);
+  }
+  // And one of both at rest wakes alike.
+  Lying third;
+  third.add_ball(0);
+  third.clock = part.clock;
+  third.bodies.move(ball, part.bodies.motion(ball));
+  third.rest.become(through_bytes(part.rest.image()));
+  third.rest.audit(third.clock.now);
+  CHECK(third.rest.holds(third.floor, ball));
+  third.rest.drop_all(ball);
+  CHECK(third.told.back() == std::tuple(false, third.floor, ball));
+}
+
+TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves, or is not there", "[turning]") {
+  Lying part;
+  const BodySlot ball = part.add_ball(0);
+  for (int flight = 0; flight <= 9; ++flight) part.touch(ball, flight);
+  REQUIRE(part.rest.carries(ball));
+  CHECK_NOTHROW(part.rest.audit(part.clock.now));
+  const auto still = part.bodies.motion(ball);
+  auto moves = still;
+  moves.path.coefficients[1] = Vector3d(0, 1, 0);
+  part.bodies.move(ball, moves);
+  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests, and moves"));
+  part.bodies.move(ball, still);
+  CHECK_NOTHROW(part.rest.audit(part.clock.now));
+  part.bodies[ball].entered = false;
+  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests on another, and is not there"));
+  part.bodies[ball].entered = true;
+
+  auto image = part.rest.image();
+  image.pairs.clear();
+  CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
+                    Contains("rests on nothing"));
+}
+
+}  // namespace kds::collision::test_turning_parts
