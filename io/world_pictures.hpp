@@ -22,8 +22,8 @@
 namespace kds::io {
 
 /// A record of a world, and pictures of it: base of WorldRecorder and PeriodicRecorder. A Recorder has two static
-/// functions: `visit(world, f)` calls f(id) for each body that is there, `describe(world, id)` is one of them as a
-/// SceneBody, without a name and without motion.
+/// functions: `visit(world, f)` calls f(id) for each body, `describe(world, id)` is one of them as a SceneBody, without
+/// a name and without motion.
 template <class Recorder, class World>
 class WorldPictures {
  public:
@@ -38,6 +38,9 @@ class WorldPictures {
     for (const BodyId id : gone) see_if_there(world, id);
     Recorder::visit(world, [&](BodyId id) { see(world, id); });
   }
+
+  /// The same of one body, which may have been removed. O(1).
+  void look(const World& world, BodyId id) { see_if_there(world, id); }
 
   /// Forgets what has been recorded, and goes on from now(): for a world that has been restored.
   void start_again(const World& world) {

@@ -7,7 +7,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <limits>
 #include <string>
 
 namespace kds::io {
@@ -24,7 +23,8 @@ namespace kds::io {
 /// Motions that events change are recorded at their times; so are the pieces of motions that are given in pieces, if
 /// the world has WorldOptions::report_pieces. What the caller does between events - to add, remove or move bodies - is
 /// recorded by look(), which page() calls, too: call it after such changes, else they count from the next event of the
-/// body, or the next look, on. A mesh that bends is shown with the keyframes that it has when it is first seen.
+/// body, or the next look, on. A mesh that bends is shown with the keyframes that it has when it is first seen, and a
+/// body that enters later from then on.
 ///
 /// Cost: O(1) an event; look() O(n log n) for n bodies.
 template <class BodyMotionType>
@@ -52,10 +52,7 @@ class WorldRecorder final
     if (!options.walls) return {};
     return Domain{options.walls->min, options.walls->max, true, options.walls->restitution};
   }
-  static void visit(const World& world, const auto& see) {
-    const Eigen::Vector3d everywhere = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
-    world.visit_overlapping(-everywhere, everywhere, see);
-  }
+  static void visit(const World& world, const auto& see) { world.visit_bodies(see); }
   static SceneBody describe(const World& world, BodyId id) {
     const kds::collision::PlacedShape placed = world.shape(id);
     SceneBody body;

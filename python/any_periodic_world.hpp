@@ -25,8 +25,10 @@ class AnyPeriodicWorld : public AnyBodies {
   virtual kds::collision::PeriodicCounters counters() const = 0;
 };
 
-/// Of degree 1 or 2; throws std::invalid_argument for another, and what the world throws for its options.
-std::unique_ptr<AnyPeriodicWorld> make_periodic_world(int degree, const kds::collision::PeriodicOptions& options,
+/// Of degree 1 or 2; throws std::invalid_argument for another, and what the world throws for its options. `record`:
+/// whether it can be asked for pictures.
+std::unique_ptr<AnyPeriodicWorld> make_periodic_world(int degree, bool record,
+                                                      const kds::collision::PeriodicOptions& options,
                                                       AnyPeriodicWorld::Listener listener);
 
 }  // namespace kds_python

@@ -4,6 +4,7 @@
 #include "collision/body_description.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/hit.hpp"
+#include "collision/queries/near_pairs.hpp"
 #include "collision/queries/nearest.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
@@ -24,6 +25,7 @@
 namespace kds_python {
 
 using kds::collision::BodyId;
+using kds::collision::ContactMode;
 
 /// Category, and what it collides with.
 using BodyMasks = std::array<std::uint32_t, 3>;
@@ -56,7 +58,13 @@ class AnyBodies {
   virtual Motion free_motion_now(BodyId id) const = 0;
   virtual void audit() const = 0;
   virtual kds::Snapshot save() = 0;
+  /// What is recorded begins again.
   virtual void restore(const kds::Snapshot& snapshot) = 0;
+
+  /// Pictures of what has been recorded (recording.hpp); of other worlds they throw std::logic_error.
+  virtual void write_replay(const std::string& file, const std::string& title) = 0;
+  virtual void write_gltf(const std::string& file, const std::string& title, double frames_per_second) = 0;
+  virtual void write_vtk(const std::string& file, double frames_per_second) = 0;
 };
 
 /// A BasicWorld of some type of motion, or a BasicParallelWorld; queries are those of queries/.
@@ -83,6 +91,7 @@ class AnyWorld : public AnyBodies {
   virtual double mass(BodyId id) const = 0;
   virtual bool fixed(BodyId id) const = 0;
   virtual bool sensor(BodyId id) const = 0;
+  virtual std::optional<BodyId> attached_to(BodyId id) const = 0;
   virtual double restitution(BodyId id) const = 0;
   virtual BodyMasks masks(BodyId id) const = 0;
   virtual std::uint64_t user_data(BodyId id) const = 0;
@@ -93,7 +102,12 @@ class AnyWorld : public AnyBodies {
   virtual kds::collision::WorldCounters counters() const = 0;
   virtual std::string_view broad_phase() const = 0;
 
+  /// All, in order of their slots.
+  virtual std::vector<BodyId> bodies() const = 0;
   virtual std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const = 0;
+  /// `motion`: of the corner `min`, with which the other one moves.
+  virtual std::vector<BodyId> in_moving_box(const Motion& motion, const Eigen::Vector3d& extent,
+                                            double until) const = 0;
   /// A ray where there is no shape.
   virtual std::vector<kds::collision::Hit> cast(const std::optional<kds::collision::PlacedShape>& shape,
                                                 const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all,
@@ -107,9 +121,18 @@ class AnyWorld : public AnyBodies {
   virtual kds::collision::ShapeDistance distance_between(BodyId a, BodyId b) const = 0;
   virtual std::optional<kds::collision::Hit> next_contact(const kds::collision::Shape& shape, const Motion& motion,
                                                           double until, const Filter& filter) const = 0;
-  virtual std::optional<kds::collision::Hit> next_contact_of(BodyId body, double until, const Filter& filter) const = 0;
-  virtual std::optional<kds::collision::Contact> next_contact_between(BodyId a, BodyId b, double until) const = 0;
+  virtual std::vector<kds::collision::Hit> next_contacts(const kds::collision::Shape& shape, const Motion& motion,
+                                                         double until, const Filter& filter) const = 0;
+  virtual std::optional<kds::collision::Hit> next_contact_of(BodyId body, double until, const Filter& filter,
+                                                             ContactMode mode) const = 0;
+  virtual std::vector<kds::collision::Hit> next_contacts_of(BodyId body, double until, const Filter& filter,
+                                                            ContactMode mode) const = 0;
+  virtual std::optional<kds::collision::Contact> next_contact_between(BodyId a, BodyId b, double until,
+                                                                      ContactMode mode) const = 0;
   virtual kds::collision::Approach closest_approach(BodyId a, BodyId b, double until) const = 0;
+  virtual std::vector<kds::collision::BodyPair> contact_pairs() const = 0;
+  virtual std::vector<kds::collision::NearPair> pairs_nearer_than(double distance, double until,
+                                                                  const Filter& filter) const = 0;
 };
 
 /// Which type of world.
@@ -117,6 +140,7 @@ struct WorldType {
   int degree = 1;           ///< from 1 to 5; 1 or 2 of bodies that turn, and in domains
   bool turning = false;     ///< whether bodies turn, or keep their orientation
   std::size_t domains = 1;  ///< of a ParallelWorld, as in ParallelOptions; 1: a World
+  bool record = false;      ///< whether it can be asked for pictures
 
   bool divided() const { return domains != 1; }
 };

@@ -144,6 +144,7 @@ py::class_<Held> bind_held(py::module_& module, const char* name) {
   });
   world.def("motions_now", &motions_now<Held>);
   world.def("advance_to", &Held::advance_to);
+  world.def("advance_for", &Held::advance_for);
   world.def("step", &Held::step);
   world.def("call_at", &Held::call_at);
   world.def("take_events", [](Held& self) { return to_array(self.take_events()); });
@@ -159,6 +160,15 @@ py::class_<Held> bind_held(py::module_& module, const char* name) {
   world.def("load", [](Held& self, const py::bytes& bytes) {
     std::istringstream in{std::string(bytes)};
     self.to_change().restore(kds::read_snapshot(in));
+  });
+  world.def("write_replay", [](Held& self, const std::string& file, const std::string& title) {
+    self.world().write_replay(file, title);
+  });
+  world.def("write_gltf", [](Held& self, const std::string& file, const std::string& title, double frames_per_second) {
+    self.world().write_gltf(file, title, frames_per_second);
+  });
+  world.def("write_vtk", [](Held& self, const std::string& file, double frames_per_second) {
+    self.world().write_vtk(file, frames_per_second);
   });
   return world;
 }

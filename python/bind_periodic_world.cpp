@@ -21,7 +21,7 @@ Boundary boundary_named(const std::string& name) {
   throw std::invalid_argument("boundaries: must be 'periodic', 'walls' or 'open', not '" + name + "'");
 }
 
-std::unique_ptr<PyPeriodicWorld> new_world(int degree, bool gather, const Eigen::Vector3d& min,
+std::unique_ptr<PyPeriodicWorld> new_world(int degree, bool gather, bool record, const Eigen::Vector3d& min,
                                            const Eigen::Vector3d& max, const std::array<std::string, 3>& boundaries,
                                            double shear_rate, double wall_restitution,
                                            const std::array<double, 6>& wall_temperatures, std::uint64_t seed,
@@ -41,7 +41,9 @@ std::unique_ptr<PyPeriodicWorld> new_world(int degree, bool gather, const Eigen:
   options.world.window = window;
   options.world.threads = threads;
   return std::make_unique<PyPeriodicWorld>(
-      [&](AnyPeriodicWorld::Listener listener) { return make_periodic_world(degree, options, std::move(listener)); },
+      [&](AnyPeriodicWorld::Listener listener) {
+        return make_periodic_world(degree, record, options, std::move(listener));
+      },
       gather);
 }
 
@@ -79,10 +81,10 @@ py::dict counters(PyPeriodicWorld& self) {
 void bind_periodic_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(PeriodicRow, event, offset, impulse);
   py::class_<PyPeriodicWorld> world = bind_held<PyPeriodicWorld>(module, "PeriodicWorld");
-  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("gather"), py::arg("min"), py::arg("max"),
-            py::arg("boundaries"), py::arg("shear_rate"), py::arg("wall_restitution"), py::arg("wall_temperatures"),
-            py::arg("seed"), py::arg("elastic_within"), py::arg("broad_phase"), py::arg("start_time"),
-            py::arg("window"), py::arg("threads"));
+  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("gather"), py::arg("record"),
+            py::arg("min"), py::arg("max"), py::arg("boundaries"), py::arg("shear_rate"), py::arg("wall_restitution"),
+            py::arg("wall_temperatures"), py::arg("seed"), py::arg("elastic_within"), py::arg("broad_phase"),
+            py::arg("start_time"), py::arg("window"), py::arg("threads"));
   world.def("bodies", [](PyPeriodicWorld& self) { return to_array(self.world().bodies()); });
   world.def("crossings", &crossings);
   world.def("ways_wrapped", &ways_wrapped);

@@ -84,7 +84,8 @@ py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double r
   return py::make_tuple(rows, to_json(result, options, 0));
 }
 
-std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const std::string& broad_phase) {
+std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const std::string& broad_phase,
+                                          bool record) {
   kds::collision::WorldOptions options;
   options.start_time = scene.begin_time;
   options.response = scene.response;
@@ -92,7 +93,7 @@ std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const
   if (scene.domain && scene.domain->reflects) {
     options.walls = kds::collision::Walls{scene.domain->min, scene.domain->max, scene.domain->restitution};
   }
-  auto world = hold_world({scene.degree(), scene.turning}, options, gather);
+  auto world = hold_world({scene.degree(), scene.turning, 1, record}, options, gather);
   for (const SceneBody& body : scene.bodies) world->world().add_body(body);
   return world;
 }

@@ -21,7 +21,7 @@ std::optional<PlacedShape> placed_shape(const std::optional<PyShape>& shape, con
   return place(shape->shape, Eigen::Quaterniond(q[0], q[1], q[2], q[3]));
 }
 
-std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains, bool gather,
+std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains, bool gather, bool record,
                                    const std::string& response, const std::string& broad_phase,
                                    const std::optional<std::array<Eigen::Vector3d, 2>>& walls, double wall_restitution,
                                    double start_time, double window, double rate, int kdop, bool report_pairs,
@@ -51,7 +51,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains
   options.shortest_flight = shortest_flight;
   options.orientation_error = orientation_error;
   options.most_edits = most_edits;
-  return hold_world({degree, turning, domains}, options, gather);
+  return hold_world({degree, turning, domains, record}, options, gather);
 }
 
 /// A sensor that moves with a body.
@@ -117,10 +117,29 @@ py::dict counters(PyWorld& self) {
   return d;
 }
 
+ContactMode mode_named(const std::string& name) {
+  if (name == "resolved") return ContactMode::resolved;
+  if (name == "transparent") return ContactMode::transparent;
+  throw std::invalid_argument("mode: must be 'resolved' or 'transparent', not '" + name + "'");
+}
+
+/// (n, 2)
+Ids contact_pairs(PyWorld& self) {
+  const std::vector<BodyPair> pairs = self.world().contact_pairs();
+  Ids rows({static_cast<py::ssize_t>(pairs.size()), py::ssize_t{2}});
+  std::uint64_t* row = rows.mutable_data();
+  for (const BodyPair& pair : pairs) *row++ = pair.a, *row++ = pair.b;
+  return rows;
+}
+
 void bind_queries(py::class_<PyWorld>& world) {
   using Filter = AnyWorld::Filter;
+  world.def("bodies", [](PyWorld& self) { return to_array(self.world().bodies()); });
   world.def("in_box", [](PyWorld& self, const Eigen::Vector3d& min, const Eigen::Vector3d& max) {
     return to_array(self.world().in_box(min, max));
+  });
+  world.def("in_moving_box", [](PyWorld& self, const Doubles& motion, const Eigen::Vector3d& extent, double until) {
+    return to_array(self.world().in_moving_box(to_motion(motion.data()), extent, until));
   });
   world.def("cast", [](PyWorld& self, const std::optional<PyShape>& shape, const Eigen::Vector4d& q,
                        const Eigen::Vector3d& from, const Eigen::Vector3d& to, bool all, const Filter& filter) {
@@ -151,12 +170,25 @@ void bind_queries(py::class_<PyWorld>& world) {
               return to_array(
                   self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contact(shape.shape, moved, until, filter)); }));
             });
-  world.def("next_contact_of", [](PyWorld& self, BodyId body, double until, const Filter& filter) {
-    return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contact_of(body, until, filter)); }));
+  world.def("next_contacts",
+            [](PyWorld& self, const PyShape& shape, const Doubles& motion, double until, const Filter& filter) {
+              const Motion moved = to_motion(motion.data());
+              return to_array(self.ask(
+                  [&](AnyWorld& w) { return to_rows(w, w.next_contacts(shape.shape, moved, until, filter)); }));
+            });
+  world.def("next_contact_of", [](PyWorld& self, BodyId body, double until, const Filter& filter,
+                                  const std::string& name) {
+    const ContactMode mode = mode_named(name);
+    return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contact_of(body, until, filter, mode)); }));
   });
-  world.def("next_contact_between", [](PyWorld& self, BodyId a, BodyId b, double until) {
+  world.def("next_contacts_of", [](PyWorld& self, BodyId body, double until, const Filter& filter,
+                                   const std::string& name) {
+    const ContactMode mode = mode_named(name);
+    return to_array(self.ask([&](AnyWorld& w) { return to_rows(w, w.next_contacts_of(body, until, filter, mode)); }));
+  });
+  world.def("next_contact_between", [](PyWorld& self, BodyId a, BodyId b, double until, const std::string& name) {
     const AnyWorld& w = self.world();
-    const auto contact = w.next_contact_between(a, b, until);
+    const auto contact = w.next_contact_between(a, b, until, mode_named(name));
     if (!contact) return to_array(std::vector<EventRow>{});
     return to_array(std::vector{to_row(0, a, b, *contact, w.user_data(a), w.user_data(b))});
   });
@@ -164,6 +196,14 @@ void bind_queries(py::class_<PyWorld>& world) {
     const Approach approach = self.world().closest_approach(a, b, until);
     return std::array{approach.time, approach.distance};
   });
+  world.def("pairs_nearer_than", [](PyWorld& self, double distance, double until, const Filter& filter) {
+    std::vector<NearPairRow> rows;
+    for (const NearPair& near : self.ask([&](AnyWorld& w) { return w.pairs_nearer_than(distance, until, filter); })) {
+      rows.push_back({near.pair.a, near.pair.b, near.approach.time, near.approach.distance});
+    }
+    return to_array(rows);
+  });
+  world.def("contact_pairs", &contact_pairs);
   world.def("partners", [](PyWorld& self, BodyId id) { return to_array(self.world().partners(id)); });
   world.def("touching", [](PyWorld& self, BodyId a, BodyId b) { return self.world().touching(a, b); });
   world.def("resting", [](PyWorld& self, BodyId a, BodyId b) { return self.world().resting(a, b); });
@@ -176,6 +216,7 @@ void bind_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(FeatureRow, kind, first, second);
   PYBIND11_NUMPY_DTYPE(EventRow, time, kind, a, b, point, normal, feature_a, feature_b, user_data_a, user_data_b);
   PYBIND11_NUMPY_DTYPE(NearRow, body, distance, point, from_point);
+  PYBIND11_NUMPY_DTYPE(NearPairRow, a, b, time, distance);
   module.attr("event_dtype") = py::dtype::of<EventRow>();
   std::vector<std::string_view> kinds(kds::io::event_kind_names.begin(), kds::io::event_kind_names.end());
   kinds.insert(kinds.end(), {"piece", "timer", "wrap"});
@@ -183,7 +224,7 @@ void bind_world(py::module_& module) {
 
   py::class_<PyWorld> world = bind_held<PyWorld>(module, "World");
   world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("turning"), py::arg("domains"),
-            py::arg("gather"), py::arg("response"), py::arg("broad_phase"), py::arg("walls"),
+            py::arg("gather"), py::arg("record"), py::arg("response"), py::arg("broad_phase"), py::arg("walls"),
             py::arg("wall_restitution"), py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"),
             py::arg("report_pairs"), py::arg("report_pieces"), py::arg("threads"), py::arg("zeno_contacts"),
             py::arg("zeno_interval"), py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"));
@@ -203,6 +244,7 @@ void bind_world(py::module_& module) {
   world.def("shape", [](PyWorld& self, BodyId id) { return PyShape{self.world().shape(id)}; });
   world.def("mass", [](PyWorld& self, BodyId id) { return self.world().mass(id); });
   world.def("fixed", [](PyWorld& self, BodyId id) { return self.world().fixed(id); });
+  world.def("attached_to", [](PyWorld& self, BodyId id) { return self.world().attached_to(id); });
   world.def("sensor", [](PyWorld& self, BodyId id) { return self.world().sensor(id); });
   world.def("restitution", [](PyWorld& self, BodyId id) { return self.world().restitution(id); });
   world.def("masks", &masks_of);

@@ -1,7 +1,9 @@
 #include "collision/periodic/periodic_world.hpp"
 #include "io/events.hpp"
+#include "io/periodic_recorder.hpp"
 #include "python/any_periodic_world.hpp"
 #include "python/narrowed.hpp"
+#include "python/recording.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -52,19 +54,32 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
   using M = kds::certificates::PointMotion<Degree>;
 
  public:
-  PeriodicWorldOf(const PeriodicOptions& options, Listener listener)
-      : min_(options.min), teller_(std::move(listener)), world_(options, &teller_) {}
+  PeriodicWorldOf(const PeriodicOptions& options, bool record, Listener listener)
+      : min_(options.min),
+        teller_(std::move(listener)),
+        recording_(record, options, teller_),
+        world_(options, recording_.listener()) {}
 
-  BodyId add_body(const Description& body) override { return world_.add_body(narrowed<M>(body)); }
+  BodyId add_body(const Description& body) override {
+    const BodyId id = world_.add_body(narrowed<M>(body));
+    recording_.look(world_, id);
+    return id;
+  }
   void reserve(std::size_t bodies) override { world_.reserve(bodies); }
-  void remove_body(BodyId id) override { world_.remove_body(id); }
+  void remove_body(BodyId id) override {
+    world_.remove_body(id);
+    recording_.look(world_, id);
+  }
 
   void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& motions) override {
     if (motions.size() != ids.size()) throw std::invalid_argument("then: in a periodic world a motion has one piece");
     for (const BodyId id : ids) (void)world_.motion(id);  // throws if it is not there
     const std::vector<M> own = narrowed_scripts<M>(ids, motions);
     for (std::size_t i = 0; i < ids.size(); ++i) require_near(own[i], "motion of body " + std::to_string(ids[i]));
-    for (std::size_t i = 0; i < ids.size(); ++i) world_.update_motion(ids[i], own[i]);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      world_.update_motion(ids[i], own[i]);
+      recording_.look(world_, ids[i]);
+    }
   }
   void set_restitutions(const std::vector<BodyId>& ids, const double* restitutions) override {
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -102,7 +117,20 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
   }
   void audit() const override { world_.audit(); }
   kds::Snapshot save() override { return kds::save(world_); }
-  void restore(const kds::Snapshot& snapshot) override { kds::restore(snapshot, world_); }
+  void restore(const kds::Snapshot& snapshot) override {
+    kds::restore(snapshot, world_);
+    recording_.start_again(world_);
+  }
+
+  void write_replay(const std::string& file, const std::string& title) override {
+    recording_.write_replay(world_, file, title);
+  }
+  void write_gltf(const std::string& file, const std::string& title, double frames_per_second) override {
+    recording_.write_gltf(world_, file, title, frames_per_second);
+  }
+  void write_vtk(const std::string& file, double frames_per_second) override {
+    recording_.write_vtk(world_, file, frames_per_second);
+  }
 
   std::vector<BodyId> bodies() const override {
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -139,15 +167,16 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
 
   Eigen::Vector3d min_;
   Teller<Degree> teller_;
+  Recording<kds::io::PeriodicRecorder<Degree>> recording_;
   PeriodicWorld<Degree> world_;
 };
 
 }  // namespace
 
-std::unique_ptr<AnyPeriodicWorld> make_periodic_world(int degree, const PeriodicOptions& options,
+std::unique_ptr<AnyPeriodicWorld> make_periodic_world(int degree, bool record, const PeriodicOptions& options,
                                                       AnyPeriodicWorld::Listener listener) {
-  if (degree == 1) return std::make_unique<PeriodicWorldOf<1>>(options, std::move(listener));
-  if (degree == 2) return std::make_unique<PeriodicWorldOf<2>>(options, std::move(listener));
+  if (degree == 1) return std::make_unique<PeriodicWorldOf<1>>(options, record, std::move(listener));
+  if (degree == 2) return std::make_unique<PeriodicWorldOf<2>>(options, record, std::move(listener));
   throw std::invalid_argument("degree: must be 1 (lines) or 2 (parabolas) in a periodic world, not " +
                               std::to_string(degree));
 }

@@ -84,6 +84,14 @@ void HeldWorld<World, Row>::advance_to(double t) {
 }
 
 template <class World, class Row>
+bool HeldWorld<World, Row>::advance_for(double budget, double t) {
+  if (allowed_ == Functions::refused) {
+    throw std::runtime_error("World::advance_for: a world in domains goes by advance_to()");
+  }
+  return run([budget, t](World& world) { return world.advance_for(budget, t); });
+}
+
+template <class World, class Row>
 bool HeldWorld<World, Row>::step(double limit) {
   return run([limit](World& world) { return world.step(limit); });
 }

@@ -41,6 +41,8 @@ class HeldWorld {
 
   /// Ctrl-C ends it between two events, with KeyboardInterrupt.
   void advance_to(double t);
+  /// s of the wall clock, and s. True if t was reached. Not of a world in domains.
+  bool advance_for(double budget, double t);
   bool step(double limit);
 
   /// None: calls nothing any more. The function is given an array of one Row.

@@ -77,6 +77,14 @@ struct NearRow {
   std::array<double, 3> from_point;
 };
 
+/// Two bodies, and when their centres are nearest.
+struct NearPairRow {
+  std::uint64_t a;
+  std::uint64_t b;
+  double time;
+  double distance;
+};
+
 inline FeatureRow to_row(const kds::collision::Feature& feature) {
   return {static_cast<std::uint32_t>(feature.kind), feature.first, feature.second};
 }

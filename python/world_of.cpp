@@ -1,12 +1,15 @@
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
+#include "collision/queries/near_pairs.hpp"
 #include "collision/world.hpp"
 #include "collision/world/checked_pieces.hpp"
-#include "io/events.hpp"
 #include "io/scene_world.hpp"
+#include "io/world_recorder.hpp"
 #include "python/any_world.hpp"
 #include "python/narrowed.hpp"
+#include "python/recording.hpp"
+#include "python/tellers.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -19,103 +22,28 @@ namespace kds_python {
 namespace {
 
 using namespace kds::collision;
-using kds::io::EventKind;
-using Clock = std::chrono::steady_clock;
-
-/// Hands on events as rows.
-class Rows {
- public:
-  explicit Rows(AnyWorld::Listener listener) : listener_(std::move(listener)) {}
-
- protected:
-  void tell(EventKind kind, const PairEvent& e) {
-    listener_(to_row(static_cast<std::int64_t>(kind), e.a, e.b, e.contact, e.user_data_a, e.user_data_b));
-  }
-  void tell(EventKind kind, const WallEvent& e) {
-    const auto wall = static_cast<std::uint64_t>(e.wall);
-    listener_(to_row(static_cast<std::int64_t>(kind), e.body, wall, e.contact, e.user_data));
-  }
-  void tell(EventKind kind, BodyId a, BodyId b, double t) {
-    listener_(to_row(static_cast<std::int64_t>(kind), a, b, nowhere(t)));
-  }
-  void tell(std::int64_t kind, std::uint64_t of, double t, std::uint64_t user_data) {
-    listener_(to_row(kind, of, of, nowhere(t), user_data, user_data));
-  }
-
- private:
-  /// As in the files of the tool, point and normal are zero.
-  static Contact nowhere(double t) {
-    Contact contact;
-    contact.time = t;
-    contact.normal = Eigen::Vector3d::Zero();
-    return contact;
-  }
-
-  AnyWorld::Listener listener_;
-};
-
-/// Of a world of some motion.
-template <class M>
-class Teller final : public BasicWorldListener<M>, private Rows {
- public:
-  using Rows::Rows;
-
-  void contact(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::contact, e); }
-  void separation(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::separation, e); }
-  void overlap(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::overlap, e); }
-  void wall(BasicWorld<M>&, const WallEvent& e) override { tell(EventKind::wall, e); }
-  void rests(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::rest, e); }
-  void wakes(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::wake, e); }
-  void rests_at_wall(BasicWorld<M>&, const WallEvent& e) override { tell(EventKind::rest_at_wall, e); }
-  void wakes_at_wall(BasicWorld<M>&, const WallEvent& e) override { tell(EventKind::wake_at_wall, e); }
-  void passes(BasicWorld<M>&, const PairEvent& e) override { tell(EventKind::pass, e); }
-  void piece(BasicWorld<M>& world, BodyId body) override { tell(piece_kind, body, world.now(), world.user_data(body)); }
-  void timer(BasicWorld<M>& world, TimerId timer) override { tell(timer_kind, timer, world.now(), 0); }
-  void pair_began(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_begin, a, b, t); }
-  void pair_ended(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_end, a, b, t); }
-};
-
-struct OutOfTime {};
-
-/// Of a world in domains, which has no advance_for(): throws OutOfTime after an event, when its time is up.
-class TellerOfDomains final : public ParallelListener, private Rows {
- public:
-  using Rows::Rows;
-
-  Clock::time_point time_up = Clock::time_point::max();
-
-  void contact(const PairEvent& e) override { hand_on(EventKind::contact, e); }
-  void separation(const PairEvent& e) override { hand_on(EventKind::separation, e); }
-  void overlap(const PairEvent& e) override { hand_on(EventKind::overlap, e); }
-  void wall(const WallEvent& e) override { hand_on(EventKind::wall, e); }
-  void rests(const PairEvent& e) override { hand_on(EventKind::rest, e); }
-  void wakes(const PairEvent& e) override { hand_on(EventKind::wake, e); }
-  void rests_at_wall(const WallEvent& e) override { hand_on(EventKind::rest_at_wall, e); }
-  void wakes_at_wall(const WallEvent& e) override { hand_on(EventKind::wake_at_wall, e); }
-  void passes(const PairEvent& e) override { hand_on(EventKind::pass, e); }
-  void timer(TimerId timer, double time) override { hand_on(timer_kind, timer, time, 0); }
-
- private:
-  void hand_on(const auto&... event) {
-    tell(event...);
-    if (Clock::now() >= time_up) throw OutOfTime{};
-  }
-};
 
 template <class M, bool divided = false>
 class WorldOf final : public AnyWorld {
   using World = std::conditional_t<divided, BasicParallelWorld<M>, BasicWorld<M>>;
 
  public:
-  WorldOf(const WorldOptions& options, Listener listener) requires(!divided)
-      : teller_(std::move(listener)), world_(options, &teller_) {}
+  WorldOf(const WorldOptions& options, bool record, Listener listener) requires(!divided)
+      : teller_(std::move(listener), options.report_pieces),
+        recording_(record, options, teller_),
+        world_(recorded(options, record), recording_.listener()) {}
   WorldOf(const WorldOptions& options, const ParallelOptions& parallel, Listener listener) requires(divided)
       : teller_(std::move(listener)), world_(options, parallel, &teller_) {}
 
-  BodyId add_body(const Description& body) override { return whole().add_body(narrowed<M>(body)); }
-  BodyId add_body(const kds::io::SceneBody& body) override { return whole().add_body(kds::io::describe<M>(body)); }
+  BodyId add_body(const Description& body) override { return added(whole().add_body(narrowed<M>(body))); }
+  BodyId add_body(const kds::io::SceneBody& body) override {
+    return added(whole().add_body(kds::io::describe<M>(body)));
+  }
   void reserve(std::size_t bodies) override { whole().reserve(bodies); }
-  void remove_body(BodyId id) override { whole().remove_body(id); }
+  void remove_body(BodyId id) override {
+    whole().remove_body(id);
+    look(id);
+  }
 
   void update_motions(const std::vector<BodyId>& ids, const std::vector<Motion>& pieces) override {
     BasicWorld<M>& world = whole();
@@ -134,6 +62,7 @@ class WorldOf final : public AnyWorld {
       } else {
         world.update_motion(ids[i], std::span(own).subspan(each * i, each));
       }
+      look(ids[i]);
     }
   }
   void append_motion(BodyId id, const std::vector<Motion>& pieces) override {
@@ -202,6 +131,7 @@ class WorldOf final : public AnyWorld {
   double mass(BodyId id) const override { return whole().mass(id); }
   bool fixed(BodyId id) const override { return whole().fixed(id); }
   bool sensor(BodyId id) const override { return whole().sensor(id); }
+  std::optional<BodyId> attached_to(BodyId id) const override { return whole().attached_to(id); }
   double restitution(BodyId id) const override { return whole().restitution(id); }
   BodyMasks masks(BodyId id) const override {
     return {whole().category(id), whole().collides_with(id), whole().group(id)};
@@ -224,11 +154,38 @@ class WorldOf final : public AnyWorld {
   std::string_view broad_phase() const override { return world_.broad_phase(); }
   void audit() const override { whole().audit(); }
   kds::Snapshot save() override { return kds::save(world_); }
-  void restore(const kds::Snapshot& snapshot) override { kds::restore(snapshot, world_); }
+  void restore(const kds::Snapshot& snapshot) override {
+    kds::restore(snapshot, world_);
+    attached_ = true;  // or so it may be
+    recording_.start_again(whole());
+  }
 
+  void write_replay(const std::string& file, const std::string& title) override {
+    recording_.write_replay(whole(), file, title);
+  }
+  void write_gltf(const std::string& file, const std::string& title, double frames_per_second) override {
+    recording_.write_gltf(whole(), file, title, frames_per_second);
+  }
+  void write_vtk(const std::string& file, double frames_per_second) override {
+    recording_.write_vtk(whole(), file, frames_per_second);
+  }
+
+  std::vector<BodyId> bodies() const override {
+    std::vector<BodyId> ids;
+    whole().visit_bodies([&ids](BodyId id) { ids.push_back(id); });
+    return ids;
+  }
   std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const override {
     std::vector<BodyId> ids;
     whole().visit_overlapping(min, max, [&ids](BodyId id) { ids.push_back(id); });
+    return ids;
+  }
+  std::vector<BodyId> in_moving_box(const Motion& motion, const Eigen::Vector3d& extent, double until) const override {
+    KineticBox<M::degree> box;
+    box.min = box.max = path_of(narrowed<M>(motion, "motion"));
+    box.max.coefficients[0] += extent;
+    std::vector<BodyId> ids;
+    whole().visit_swept(box, until, [&ids](BodyId id) { ids.push_back(id); });
     return ids;
   }
   std::vector<Hit> cast(const std::optional<PlacedShape>& shape, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
@@ -253,18 +210,27 @@ class WorldOf final : public AnyWorld {
   }
   std::optional<Hit> next_contact(const Shape& shape, const Motion& motion, double until,
                                   const Filter& filter) const override {
-    const M own = narrowed<M>(motion, "motion");
-    const PlacedShape placed = place(shape, turns<M> ? Eigen::Quaterniond::Identity() : motion.orientation);
-    return kds::collision::next_contact(whole(), placed, own, until, filter);
+    return kds::collision::next_contact(whole(), placed(shape, motion), narrowed<M>(motion, "motion"), until, filter);
   }
-  std::optional<Hit> next_contact_of(BodyId body, double until, const Filter& filter) const override {
-    return kds::collision::next_contact_of(whole(), body, until, filter);
+  std::vector<Hit> next_contacts(const Shape& shape, const Motion& motion, double until,
+                                 const Filter& filter) const override {
+    return kds::collision::next_contacts(whole(), placed(shape, motion), narrowed<M>(motion, "motion"), until, filter);
   }
-  std::optional<Contact> next_contact_between(BodyId a, BodyId b, double until) const override {
-    return kds::collision::next_contact_between(whole(), a, b, until);
+  std::optional<Hit> next_contact_of(BodyId body, double until, const Filter& filter, ContactMode mode) const override {
+    return kds::collision::next_contact_of(whole(), body, until, filter, mode);
+  }
+  std::vector<Hit> next_contacts_of(BodyId body, double until, const Filter& filter, ContactMode mode) const override {
+    return kds::collision::next_contacts_of(whole(), body, until, filter, mode);
+  }
+  std::optional<Contact> next_contact_between(BodyId a, BodyId b, double until, ContactMode mode) const override {
+    return kds::collision::next_contact_between(whole(), a, b, until, mode);
   }
   Approach closest_approach(BodyId a, BodyId b, double until) const override {
     return kds::collision::closest_approach(whole(), a, b, until);
+  }
+  std::vector<BodyPair> contact_pairs() const override { return kds::collision::contact_pairs(whole()); }
+  std::vector<NearPair> pairs_nearer_than(double distance, double until, const Filter& filter) const override {
+    return kds::collision::pairs_nearer_than(whole(), distance, until, filter);
   }
 
  private:
@@ -272,6 +238,24 @@ class WorldOf final : public AnyWorld {
   BasicWorld<M>& whole() const {
     if constexpr (divided) return world_.whole();
     if constexpr (!divided) return world_;
+  }
+
+  BodyId added(BodyId id) {
+    attached_ = attached_ || whole().attached_to(id);
+    recording_.look(whole(), id);
+    return id;
+  }
+  /// What is attached to a body changes with it.
+  void look(BodyId id) {
+    if (attached_) {
+      recording_.look(whole());
+    } else {
+      recording_.look(whole(), id);
+    }
+  }
+
+  static PlacedShape placed(const Shape& shape, const Motion& motion) {
+    return place(shape, turns<M> ? Eigen::Quaterniond::Identity() : motion.orientation);
   }
 
   /// Of a body that is to enter later the motion is that of its start.
@@ -282,7 +266,9 @@ class WorldOf final : public AnyWorld {
   }
 
   std::conditional_t<divided, TellerOfDomains, Teller<M>> teller_;
-  mutable World world_;  ///< one that is divided is made whole to be asked
+  Recording<kds::io::WorldRecorder<M>> recording_;
+  bool attached_ = false;  ///< whether a sensor may be attached to a body
+  mutable World world_;    ///< one that is divided is made whole to be asked
 };
 
 }  // namespace
@@ -292,7 +278,7 @@ std::unique_ptr<AnyWorld> make_world(const WorldType& type, const WorldOptions& 
   using kds::certificates::RigidMotion;
   const int degree = type.degree;
   const auto make = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
-    return std::make_unique<WorldOf<M>>(options, std::move(listener));
+    return std::make_unique<WorldOf<M>>(options, type.record, std::move(listener));
   };
   const auto divide = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
     const ParallelOptions parallel{.threads = options.threads, .domains = type.domains};
@@ -301,6 +287,7 @@ std::unique_ptr<AnyWorld> make_world(const WorldType& type, const WorldOptions& 
   const auto refuse = [degree](const std::string& most) {
     return std::invalid_argument("degree: must be 1 (lines)" + most + ", not " + std::to_string(degree));
   };
+  if (type.divided() && type.record) throw std::invalid_argument("record: must be False in a world in domains");
   if (type.divided() && type.turning) throw std::invalid_argument("domains: must be 1 where bodies turn");
   if (type.divided()) {
     if (degree != 1 && degree != 2) throw refuse(" or 2 (parabolas) in a world in domains");

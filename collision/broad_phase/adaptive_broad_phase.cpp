@@ -43,8 +43,22 @@ void AdaptiveBroadPhase<Degree>::report_changes(std::span<const Entry> bodies, c
 }
 
 template <int Degree>
+std::unique_ptr<KineticGrid<Degree>> AdaptiveBroadPhase<Degree>::new_grid() const {
+  auto grid = std::make_unique<KineticGrid<Degree>>(box_of_, threads_, tuning_.grid);
+  grid->reserve(room_);
+  return grid;
+}
+
+template <int Degree>
+void AdaptiveBroadPhase<Degree>::reserve(BodySlot end) {
+  room_ = std::max(room_, end);
+  if (grid_) return grid_->reserve(room_);
+  if (room_ > tuning_.most_for_few) spare_ = new_grid();
+}
+
+template <int Degree>
 void AdaptiveBroadPhase<Degree>::make_grid(double now) {
-  grid_ = std::make_unique<KineticGrid<Degree>>(box_of_, threads_, tuning_.grid);
+  grid_ = spare_ ? std::move(spare_) : new_grid();
   grid_->extend_horizon(now, horizon_);
 }
 

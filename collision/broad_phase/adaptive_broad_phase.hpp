@@ -32,6 +32,7 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
 
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
+  void reserve(BodySlot end) override;
   void expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) override;
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;
@@ -52,6 +53,7 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
 
  private:
   const BroadPhase<Degree>& chosen() const { return grid_ ? static_cast<const BroadPhase<Degree>&>(*grid_) : few_; }
+  std::unique_ptr<KineticGrid<Degree>> new_grid() const;
   void make_grid(double now);
   void change_to_grid(double now, PairListener& listener);
   void change_to_few(double now, PairListener& listener);
@@ -63,7 +65,10 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   AdaptiveTuning tuning_;
   FewBoxes<Degree> few_;                       ///< has all bodies while there is no grid
   std::unique_ptr<KineticGrid<Degree>> grid_;  ///< otherwise has them
+  /// One that has room for the bodies to come, until it is needed.
+  std::unique_ptr<KineticGrid<Degree>> spare_;
   std::size_t threads_;
+  BodySlot room_ = 0;  ///< slots for which reserve() has asked
   double horizon_ = never;
   BroadPhaseCounters done_;  ///< work of grids that have been given up
 };

@@ -70,6 +70,9 @@ class BroadPhase {
   /// `now` is not before the last time given, a body that is added is not there yet, and one that is removed or updated
   /// is.
   virtual void insert(std::span<const Entry> bodies, double now, PairListener& listener) = 0;
+  /// A hint: there will be bodies in all slots below `end`. Changes nothing that can be observed; what this makes room
+  /// for then needs no time when bodies are inserted.
+  virtual void reserve(BodySlot /*end*/) {}
   /// A hint: so many bodies, of slots below `end`, will be inserted soon, in parts; these are some of them. Changes
   /// nothing that can be observed.
   virtual void expect(std::size_t /*bodies*/, BodySlot /*end*/, std::span<const Entry> /*some*/, double /*now*/) {}

@@ -13,6 +13,7 @@
 #include <memory>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -64,6 +65,23 @@ void KineticGrid<Degree>::prepare(std::size_t bodies, std::span<const Entry> som
   first_travel_ = tuning_.first_travel * spacing;
   for (Filter& filter : filters_) filter.travel = 0;
   fat_boxes_.choose_cells(spacing);
+}
+
+/// Of boxes that are guests of coarser levels room is not made: how many there will be nobody knows.
+template <int Degree>
+void KineticGrid<Degree>::reserve(BodySlot end) {
+  if (end <= bodies_.size()) return;
+  bodies_.resize(end);
+  expiry_.resize(end);
+  // A queue keeps the room that events have had.
+  std::vector<BodySlot> added;
+  for (BodySlot id = 0; id < end; ++id) {
+    if (expiry_.contains(id)) continue;
+    expiry_.set(id, 0);
+    added.push_back(id);
+  }
+  for (const BodySlot id : added) expiry_.clear(id);
+  fat_boxes_.reserve(end);
 }
 
 template <int Degree>

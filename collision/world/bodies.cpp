@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -96,7 +97,7 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
   bodies_[slot] = from.bodies_[of];
   movers_[slot] = from.movers_[of];
   if constexpr (turns<Motion>) motions_[slot] = from.motions_[of];
-  bodies_[slot].entered = bodies_[slot].waits = false;
+  bodies_[slot].entered = false, bodies_[slot].waits_at = 0;
   filters_ = filters_ || filter(slot) != CollisionFilter{};
   sensors_ = sensors_ || bodies_[slot].sensor;
   ++alive_;
@@ -136,9 +137,7 @@ void Bodies<Motion>::set_mass(BodySlot slot, double mass) {
 
 template <class Motion>
 void Bodies<Motion>::remove(BodySlot slot) {
-  if (waits(slot)) {  // otherwise the next body in this slot would enter in its place
-    waiting_.erase(std::find(waiting_.begin() + static_cast<std::ptrdiff_t>(taken_), waiting_.end(), slot));
-  }
+  if (waits(slot)) wait_no_more(slot);
   bodies_[slot] = Body{};
   ignored_.forget(slot);
   attachments_.detach(slot);
@@ -158,11 +157,36 @@ void Bodies<Motion>::reserve(std::size_t bodies) {
 }
 
 template <class Motion>
+void Bodies<Motion>::wait(BodySlot slot) {
+  waiting_.push_back(slot);
+  bodies_[slot].waits_at = static_cast<std::uint32_t>(waiting_.size());
+  ++waits_;
+}
+
+/// The next body in this slot must not enter in its place, which stays empty until half of all places are.
+template <class Motion>
+void Bodies<Motion>::wait_no_more(BodySlot slot) {
+  waiting_[std::exchange(bodies_[slot].waits_at, 0) - 1] = no_body;
+  if (2 * --waits_ >= waiting_.size() - taken_) return;
+  const std::vector<BodySlot> places = std::exchange(waiting_, {});
+  const std::size_t first = std::exchange(taken_, 0);
+  waits_ = 0;
+  for (std::size_t i = first; i < places.size(); ++i) {
+    if (places[i] != no_body) wait(places[i]);
+  }
+}
+
+template <class Motion>
 std::vector<BodySlot> Bodies<Motion>::take_waiting(std::size_t most) {
-  const auto part = waiting().first(std::min(most, waiting().size()));
-  std::vector<BodySlot> taken(part.begin(), part.end());
-  for (const BodySlot slot : taken) bodies_[slot].waits = false;
-  taken_ += static_cast<BodySlot>(taken.size());
+  std::vector<BodySlot> taken;
+  taken.reserve(std::min(most, waits_));
+  while (taken.size() < most && any_waits()) {
+    const BodySlot slot = waiting_[taken_++];
+    if (slot == no_body) continue;
+    taken.push_back(slot);
+    bodies_[slot].waits_at = 0;
+    --waits_;
+  }
   if (!any_waits()) {
     std::vector<BodySlot>().swap(waiting_);
     taken_ = 0;
@@ -219,7 +243,8 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
   image.meshes = meshes();
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) describe(slot, image.bodies.emplace_back(), image.meshes);
   image.generations = generations_, image.free = free_;
-  image.waiting.assign(waiting().begin(), waiting().end());
+  std::copy_if(waiting().begin(), waiting().end(), std::back_inserter(image.waiting),
+               [](BodySlot slot) { return slot != no_body; });
   image.ignored = ignored_.pairs(), image.attached = attachments_.all();
   return image;
 }
@@ -271,7 +296,7 @@ void Bodies<Motion>::lend() {
   LargeVector<Motion>().swap(motions_);
   LargeVector<Body>().swap(bodies_);
   std::vector<BodySlot>().swap(waiting_);
-  taken_ = 0;
+  taken_ = waits_ = 0;
 }
 
 template <class Motion>
@@ -304,7 +329,7 @@ void Bodies<Motion>::set_shape(BodySlot slot, PlacedShape placed) {
 
 template <class Motion>
 void Bodies<Motion>::become(const Image& image) {
-  generations_ = image.generations, free_ = image.free, waiting_ = image.waiting, taken_ = 0;
+  generations_ = image.generations, free_ = image.free;
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);
@@ -316,7 +341,9 @@ void Bodies<Motion>::become(const Image& image) {
   for (BodySlot slot = 0; slot < count; ++slot) {
     if (image.bodies[slot].alive) become(slot, image.bodies[slot]);
   }
-  for (const BodySlot slot : waiting_) bodies_[slot].waits = true;
+  waiting_.clear();
+  taken_ = waits_ = 0;
+  for (const BodySlot slot : image.waiting) wait(slot);
 }
 
 template <class Motion>

@@ -88,8 +88,9 @@ struct Body
   bool self_contacts = false;
   std::uint64_t user_data = 0;
   bool alive = false;
-  bool entered = false;        ///< its motion has begun; it is in the broad phase, if it collides with anything
-  bool waits = false;          ///< its motion has begun, and it is about to enter
+  bool entered = false;  ///< its motion has begun; it is in the broad phase, if it collides with anything
+  /// If its motion has begun and it is about to enter, one more than its place among those that wait; else 0.
+  std::uint32_t waits_at = 0;
   std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
   double burst_start = -never;
   std::shared_ptr<const PlacedShape> shape;  ///< null if it is placed_ball(bounding_radius)
@@ -220,11 +221,14 @@ class Bodies {
   void reserve(std::size_t bodies);
 
   /// A body's motion begins now: it waits to enter.
-  void wait(BodySlot slot) { bodies_[slot].waits = true, waiting_.push_back(slot); }
-  bool any_waits() const { return !waiting().empty(); }
-  bool waits(BodySlot slot) const { return bodies_[slot].waits; }
+  void wait(BodySlot slot);
+  bool any_waits() const { return waits_ > 0; }
+  bool waits(BodySlot slot) const { return bodies_[slot].waits_at != 0; }
+  /// How many wait.
+  std::size_t waits() const { return waits_; }
+  /// Those that have waited longest come first. In the place of one that was removed is no_body.
   std::span<const BodySlot> waiting() const { return std::span<const BodySlot>(waiting_).subspan(taken_); }
-  /// Takes those that have waited longest, all or so many. Cost: O(1) a body that is taken.
+  /// Takes those that have waited longest, all or so many. Cost: O(1) a body that is taken, or has been removed.
   std::vector<BodySlot> take_waiting(std::size_t most);
 
   /// By slot, the number of a body: the order of events of one time, and of the two bodies of a pair, is the order of
@@ -268,6 +272,7 @@ class Bodies {
   [[noreturn]] void refuse(BodyId id) const;
   std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
+  void wait_no_more(BodySlot slot);
   template <class One>
   void describe(BodySlot slot, One& one, const std::vector<std::shared_ptr<const Mesh>>& meshes) const;
   template <class One>
@@ -285,9 +290,10 @@ class Bodies {
   Attachments attachments_;
   std::size_t alive_ = 0;
   std::size_t lent_ = 0;  ///< slots, while others have the bodies
+  std::size_t waits_ = 0;
+  std::size_t taken_ = 0;
   bool filters_ = false;
   bool sensors_ = false;
-  BodySlot taken_ = 0;
 };
 
 #define KDS_DECLARE(motion) extern template class Bodies<motion>;

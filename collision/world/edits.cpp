@@ -110,6 +110,9 @@ void Engine<Motion>::reserve(std::size_t bodies) {
   }
   bodies_.reserve(bodies);
   walls_.reserve(bodies);
+  if (bodies <= reserved_) return;
+  reserved_ = static_cast<BodySlot>(bodies);
+  broad_phase_->reserve(reserved_);
 }
 
 /// A sensor with the motion of its owner.
@@ -230,16 +233,16 @@ void Engine<Motion>::expect_new_bodies() {
   boxes.reserve(waiting.size() / step + 1);
   for (std::size_t i = 0; i < waiting.size(); i += step) {
     const BodySlot slot = waiting[i];
-    if (!bodies_.in_broad_phase(slot) || volumes_.from_caller(slot)) continue;
+    if (slot == no_body || !bodies_.in_broad_phase(slot) || volumes_.from_caller(slot)) continue;
     boxes.push_back(volumes_.renew(slot));
     entries.push_back({slot, &boxes.back()});
   }
-  broad_phase_->expect(waiting.size(), static_cast<BodySlot>(bodies_.slots()), entries, clock_.now);
+  broad_phase_->expect(bodies_.waits(), static_cast<BodySlot>(bodies_.slots()), entries, clock_.now);
 }
 
 template <class Motion>
 void Engine<Motion>::enter_new_bodies(std::size_t most) {
-  if (most < bodies_.waiting().size() && expected_ < bodies_.slots()) expect_new_bodies();
+  if (most < bodies_.waits() && expected_ < bodies_.slots()) expect_new_bodies();
   enter(bodies_.take_waiting(most), Begin::entering);
 }
 

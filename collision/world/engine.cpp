@@ -78,6 +78,7 @@ template <class Motion>
 void Engine<Motion>::make_broad_phase() {
   const auto box_of = [this](BodySlot slot) { return volumes_.box(slot); };
   broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), box_of, volumes_.kdops());
+  broad_phase_->reserve(reserved_);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
   expected_ = 0;
   pairs_.expect_exact(broad_phase_->exact());

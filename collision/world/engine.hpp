@@ -388,6 +388,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   /// When advance_for() is to return. Until then work that may be much at one instant is done in small parts.
   std::optional<WallClock::time_point> deadline_;
   std::size_t expected_ = 0;         ///< the broad phase has been told of the bodies in slots below this
+  BodySlot reserved_ = 0;            ///< it has been asked to make room for those below this
   double callers_now_;               ///< the clock as callers know it
   double looked_for_until_ = never;  ///< the horizon of a simulator: later events need not be found by next_time()
   double idle_until_ = -never;       ///< nothing is due before it; an edit resets it

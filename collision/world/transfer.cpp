@@ -99,7 +99,7 @@ void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progr
 
 template <class Motion>
 std::vector<Timers::Image::One> Engine<Motion>::note_passed(double t) {
-  for (const BodySlot slot : bodies_.take_waiting(bodies_.waiting().size())) bodies_[slot].entered = true;
+  for (const BodySlot slot : bodies_.take_waiting(bodies_.waits())) bodies_[slot].entered = true;
   while (scripts_.next_time() <= t) {
     for (const auto& [slot, motion] : scripts_.take_next()) {
       bodies_.accelerate_freely(slot, motion);
@@ -131,7 +131,7 @@ void Engine<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
     clock_ = {t, t + options_.window};
     callers_now_ = t;
     count_edit();
-    bodies_.take_waiting(bodies_.waiting().size());
+    bodies_.take_waiting(bodies_.waits());
     for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
       if (bodies_.alive(slot) && !bodies_[slot].entered && has_begun(slot)) bodies_.wait(slot);
     }

@@ -18,7 +18,7 @@ function capsuleGeometry(halfLength, detail) {
 }
 
 function geometryOf({ shape, size }, count) {
-  const detail = count > 3000 ? 12 : 28;
+  const detail = coarse ? 4 : count > 3000 ? 12 : 28;
   if (shape === "sphere") return new THREE.SphereBufferGeometry(1, detail, detail * 3 >> 2);
   if (shape === "capsule") return capsuleGeometry(size[2] / size[0], detail);
   if (shape === "box") return new THREE.BoxBufferGeometry(2, 2, 2);
@@ -54,8 +54,9 @@ for (const bodies of groups.values()) {
   geometry.setAttribute("color", colours);
   // A coarse mesh shows its triangles; a fine one looks smooth.
   const flat = shape === "box" || (typeof shape === "number" && data.meshes[shape].triangles.length < 3 * 600);
-  const material = new THREE.MeshPhongMaterial({ specular: 0x1c1c1c, shininess: 24, flatShading: flat,
-    vertexColors: THREE.VertexColors, side: THREE.DoubleSide });
+  const look = { vertexColors: THREE.VertexColors, side: THREE.DoubleSide };
+  const material = coarse ? new THREE.MeshLambertMaterial(look)
+    : new THREE.MeshPhongMaterial({ specular: 0x1c1c1c, shininess: 24, flatShading: flat, ...look });
   // What is fixed holds others, and sensors are around them: one looks through both.
   if (seenThrough(bodies[0])) {
     Object.assign(material, { transparent: true, opacity: bodies[0].sensor ? 0.3 : 0.18, depthWrite: false });

@@ -1,13 +1,21 @@
 // What is around the bodies: the space, light and camera.
 const canvas = document.getElementById("view");
+/** Whether there are many bodies, and the processor draws: then each has fewer triangles and simpler light. */
+const coarse = data.bodies.length > 1000 && (() => {
+  const gl = document.createElement("canvas").getContext("webgl");
+  const names = gl && gl.getExtension("WEBGL_debug_renderer_info");
+  const name = names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "";
+  if (gl && gl.getExtension("WEBGL_lose_context")) gl.getExtension("WEBGL_lose_context").loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+})();
 let renderer;
 try {
-  renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
+  renderer = new THREE.WebGLRenderer({ canvas, antialias: !coarse });
 } catch (error) {
   document.getElementById("sorry").style.display = "grid";
   throw error;
 }
-renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+renderer.setPixelRatio(coarse ? 1 : Math.min(window.devicePixelRatio, 2));
 renderer.gammaOutput = true;
 renderer.setClearColor(0x0b0e13);
 const scene = new THREE.Scene();

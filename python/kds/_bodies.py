@@ -243,7 +243,7 @@ class MovingBodies:
 
     @property
     def bodies(self) -> Ids:
-        """The ids of all bodies that have entered, or enter now (n,)."""
+        """The ids of all bodies (n,)."""
         raise NotImplementedError
 
     def _motions(self, bodies: ArrayLike | None) -> Doubles:
@@ -283,8 +283,8 @@ class Bodies(MovingBodies):
 
     @property
     def bodies(self) -> Ids:
-        """The ids of all bodies that have entered, or enter now (n,)."""
-        return self._core.in_box(np.full(3, -math.inf), np.full(3, math.inf))
+        """The ids of all bodies (n,), those that enter later included."""
+        return self._core.bodies()
 
     def attach_sensor(
         self,
@@ -329,6 +329,10 @@ class Bodies(MovingBodies):
     def sensor(self, body: int) -> bool:
         """Whether it only reports."""
         return self._core.sensor(identity("body", body))
+
+    def attached_to(self, body: int) -> int | None:
+        """The body that a sensor moves with; None if it is not attached."""
+        return self._core.attached_to(identity("body", body))
 
     def restitution(self, body: int) -> float:
         """Its restitution: of two that meet the lower counts."""

@@ -26,7 +26,7 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
     velocity in x grows by this for each unit of y. wall_restitution: 0 to 1. wall_temperatures (6,): 0 for walls that
     reflect, else they are thermostats, in units of mass * speed^2; `seed`: of what these draw. elastic_within (s): a
     contact of a body that has had another within this time is elastic, which inelastic gases need.
-    broad_phase, gather, start_time, window, threads: as a World has them.
+    broad_phase, gather, record, start_time, window, threads: as a World has them. Pictures have no images of bodies.
 
     A body has one piece of motion and 16 bits of category and mask, is no sensor, and has a bounding ball smaller than
     half of each period; what does not fit is refused with ValueError.
@@ -49,6 +49,7 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
         elastic_within: float = 0.0,
         broad_phase: str = "auto",
         gather: bool = True,
+        record: bool = False,
         start_time: float = 0.0,
         window: float = math.inf,
         threads: int = 1,
@@ -59,6 +60,7 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
         self._options: dict[str, Any] = dict(
             degree=whole("degree", degree, 2**31 - 1),
             gather=flag("gather", gather),
+            record=flag("record", record),
             min=vector("low", low),
             max=vector("high", high),
             boundaries=list(sides),

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import Ids, doubles, identity, number, shape_of, vector, whole
+from kds._arrays import Doubles, Ids, doubles, identity, number, shape_of, vector, whole, word
 from kds._events import as_events
 from kds._kds import Shape
 from kds._motion import (
@@ -65,6 +65,23 @@ class Queries:
     def in_box(self, low: ArrayLike, high: ArrayLike) -> Ids:
         """The bodies whose bounding volumes meet a box now, its ends may be infinite."""
         return self._core.in_box(vector("low", low), vector("high", high))
+
+    def in_moving_box(
+        self,
+        low: ArrayLike,
+        high: ArrayLike,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+        *,
+        until: float,
+    ) -> Ids:
+        """The bodies whose bounding boxes, on the ways that they have from now to `until` (s), meet a box on its way:
+        `low` and `high` are its corners now. Some are among them that it only comes near."""
+        motion = self._moved(low, velocity, acceleration, UPRIGHT, STILL, NOTHING)
+        extent = vector("high", high) - vector("low", low)
+        if not (extent >= 0).all():
+            raise ValueError("high: must not be below low")
+        return self._core.in_moving_box(motion, extent, number("until", until))
 
     def cast(
         self,
@@ -166,6 +183,38 @@ class Queries:
     ) -> np.record | None:
         """The first body that a shape will meet, up to `until` (s), which is in no world and moves so from now on, as
         all move now; None if none. The hit has the time (s), a is the body, point and normal."""
+        motion = self._moved(position, velocity, acceleration, orientation, angular_velocity, higher)
+        ends = number("until", until)
+        return _first(self._core.next_contact(shape_of("shape", shape), motion, ends, _checked(filter)))
+
+    def next_contacts(
+        self,
+        shape: Shape,
+        position: ArrayLike,
+        velocity: ArrayLike = STILL,
+        acceleration: ArrayLike = STILL,
+        *,
+        until: float,
+        orientation: ArrayLike = UPRIGHT,
+        angular_velocity: ArrayLike = STILL,
+        higher: ArrayLike = NOTHING,
+        filter: Filter | None = None,
+    ) -> np.recarray:
+        """All bodies that it will meet, each once, by time: of a place that stands still, who enters it before then."""
+        motion = self._moved(position, velocity, acceleration, orientation, angular_velocity, higher)
+        ends = number("until", until)
+        return as_events(self._core.next_contacts(shape_of("shape", shape), motion, ends, _checked(filter)))
+
+    def _moved(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        acceleration: ArrayLike,
+        orientation: ArrayLike,
+        angular_velocity: ArrayLike,
+        higher: ArrayLike,
+    ) -> Doubles:
+        """A motion from now on."""
         motion = np.empty((1, COLUMNS))
         motion[0, POSITION] = vector("position", position)
         motion[0, VELOCITY] = vector("velocity", velocity)
@@ -174,22 +223,46 @@ class Queries:
         motion[0, ORIENTATION] = doubles("orientation", orientation, (4,))
         motion[0, ANGULAR_VELOCITY] = vector("angular_velocity", angular_velocity)
         motion[0, HIGHER] = higher_terms("higher", higher, ())
-        ends = number("until", until)
-        return _first(self._core.next_contact(shape_of("shape", shape), motion, ends, _checked(filter)))
+        return motion
 
-    def next_contact_of(self, body: int, *, until: float, filter: Filter | None = None) -> np.record | None:
-        """What a body will meet first, up to `until`, as all move now; None if nothing. a is the other body."""
-        ends = number("until", until)
-        return _first(self._core.next_contact_of(identity("body", body), ends, _checked(filter)))
+    def next_contact_of(
+        self, body: int, *, until: float, filter: Filter | None = None, mode: str = "resolved"
+    ) -> np.record | None:
+        """What a body will meet first, up to `until`, as all move now; None if nothing. a is the other body.
 
-    def next_contact_between(self, a: int, b: int, *, until: float) -> np.record | None:
+        mode: 'resolved': what it touches now is met only if the two approach each other; 'transparent': what it overlaps
+        is met now.
+        """
+        ends = number("until", until)
+        body_id = identity("body", body)
+        return _first(self._core.next_contact_of(body_id, ends, _checked(filter), word("mode", mode)))
+
+    def next_contacts_of(
+        self, body: int, *, until: float, filter: Filter | None = None, mode: str = "resolved"
+    ) -> np.recarray:
+        """All that it will meet, each once, by time."""
+        ends = number("until", until)
+        body_id = identity("body", body)
+        return as_events(self._core.next_contacts_of(body_id, ends, _checked(filter), word("mode", mode)))
+
+    def next_contact_between(self, a: int, b: int, *, until: float, mode: str = "resolved") -> np.record | None:
         """When and where two bodies will meet, as they move now; None if they do not."""
         pair = identity("a", a), identity("b", b)
-        return _first(self._core.next_contact_between(*pair, number("until", until)))
+        return _first(self._core.next_contact_between(*pair, number("until", until), word("mode", mode)))
 
     def closest_approach(self, a: int, b: int, *, until: float) -> Approach:
         """When the centres of two bodies are nearest, up to `until`, and how far apart then."""
         return Approach(*self._core.closest_approach(identity("a", a), identity("b", b), number("until", until)))
+
+    def pairs_nearer_than(self, distance: float, *, until: float, filter: Filter | None = None) -> np.recarray:
+        """All pairs of bodies whose centres will come nearer to each other than `distance`, up to `until`, as all move
+        now: a, b, time (s) and distance of their closest approach, by time."""
+        found = self._core.pairs_nearer_than(number("distance", distance), number("until", until), _checked(filter))
+        return found.view(np.recarray)
+
+    def contact_pairs(self) -> Ids:
+        """All pairs of bodies that touch or rest on each other now (n, 2)."""
+        return self._core.contact_pairs()
 
     def partners(self, body: int) -> Ids:
         """The bodies that a body touches or rests on, as touching() and resting() say (n,)."""

@@ -1,13 +1,14 @@
-"""The clock of a world, its events and its state."""
+"""The clock of a world, its events, its state, and pictures of it."""
 
 from __future__ import annotations
 
 import math
+import os
 from typing import Any, Callable
 
 import numpy as np
 
-from kds._arrays import number
+from kds._arrays import number, path, word
 from kds._events import EventKind, as_events, kind_of
 
 
@@ -30,6 +31,19 @@ class Running:
         """
         self._core.advance_to(number("t", t))
         return self.take_events()
+
+    def advance_for(self, budget: float, t: float) -> bool:
+        """Processes events up to t (s), until `budget` seconds of the wall clock have passed; True if t was reached.
+        What has happened, take_events() tells: the same events as those of advance_to(), whatever the budgets.
+
+        At least one event is processed, or a part of the work before it (less than a millisecond, as a rule). Not
+        divided are functions that are called, and bodies that come to rest in a heap; in a PeriodicWorld only events
+        are.
+        """
+        seconds = number("budget", budget)
+        if not seconds >= 0:
+            raise ValueError(f"budget: must be >= 0 s, and is {seconds}")
+        return self._core.advance_for(seconds, number("t", t))
 
     def step(self, limit: float = math.inf) -> bool:
         """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if
@@ -66,6 +80,24 @@ class Running:
             raise ValueError(f"snapshot: must be bytes, and is {type(snapshot).__name__}")
         self._core.load(snapshot)
 
+    def write_replay(self, file: str | os.PathLike[str], title: str = "") -> None:
+        """Writes a page that plays what has been recorded, up to now: one HTML file, for any browser.
+
+        RuntimeError unless the world was made with record=True, and where three.js is not found. The title is the name
+        of the file if it is left out. OSError for a file that cannot be written; it appears when it is complete.
+        """
+        self._core.write_replay(*_file_and_title(file, title))
+
+    def write_gltf(self, file: str | os.PathLike[str], title: str = "", frames_per_second: float = 60) -> None:
+        """Writes the same as an animation (glTF 2.0, for Blender and its like): straight paths have keys at their ends,
+        all others so many a second. ValueError unless frames_per_second is finite and > 0."""
+        self._core.write_gltf(*_file_and_title(file, title), number("frames_per_second", frames_per_second))
+
+    def write_vtk(self, file: str | os.PathLike[str], frames_per_second: float = 60) -> None:
+        """Writes the same as a series of surfaces, for ParaView: `file`, whose name ends in .pvd, and beside it a folder
+        with the frames, so many a second."""
+        self._core.write_vtk(path("file", file), number("frames_per_second", frames_per_second))
+
     @property
     def counters(self) -> dict[str, int]:
         """The work so far: contacts, pair_tests, motion_updates, ..."""
@@ -74,3 +106,8 @@ class Running:
     def audit(self) -> None:
         """Checks the world against brute force, in O(n^2); RuntimeError if it is wrong."""
         self._core.audit()
+
+
+def _file_and_title(file: str | os.PathLike[str], title: str) -> tuple[str, str]:
+    name = path("file", file)
+    return name, word("title", title) or os.path.basename(name)

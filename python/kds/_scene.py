@@ -122,12 +122,13 @@ class Scene:
         )
         return Run(as_events(rows), json.loads(stats))
 
-    def world(self, *, gather: bool = True, broad_phase: str = "auto") -> World:
-        """A world with the bodies of the scene, at its begin_time: to be run step by step, asked and changed.
+    def world(self, *, gather: bool = True, broad_phase: str = "auto", record: bool = False) -> World:
+        """A world with the bodies of the scene, at its begin_time: to be run step by step, asked and changed. `record`:
+        whether it is to write_replay().
 
         Ids of bodies are their places in `names`. Such a world has snapshots, but cannot be pickled.
         """
-        core = self._core.world(flag("gather", gather), word("broad_phase", broad_phase))
+        core = self._core.world(flag("gather", gather), word("broad_phase", broad_phase), flag("record", record))
         return World._of_core(core, self.degree, self.turning)
 
 

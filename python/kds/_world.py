@@ -32,7 +32,9 @@ class World(Running, Bodies, Edits, Queries):
     broad_phase: 'auto', 'grid', 'kinetic-sap', 'sap' (needs a rate, Hz) or 'all-pairs'. The events are the same.
     report_pairs: bounding volumes that begin and cease to overlap are events too. report_pieces: and pieces of motion
         that start, but the first of a body that is there from the beginning.
-    gather: whether events are kept for advance_to() and take_events().
+    gather: whether events are kept for advance_to() and take_events(). record: whether what happens is recorded, from
+        the first body on, for write_replay(), write_gltf() and write_vtk(); in some hundred bytes an event. Not with
+        domains.
     start_time: s. window: s; how far ahead events are predicted at a time. threads: 0 for as many as there are.
 
     Bodies are named by their ids, whole numbers: 0, 1, 2, ... as long as none has been removed, and none is given
@@ -55,6 +57,7 @@ class World(Running, Bodies, Edits, Queries):
         report_pairs: bool = False,
         report_pieces: bool = False,
         gather: bool = True,
+        record: bool = False,
         start_time: float = 0.0,
         window: float = math.inf,
         rate: float = 0.0,
@@ -74,6 +77,7 @@ class World(Running, Bodies, Edits, Queries):
             turning=flag("turning", turning),
             domains=whole("domains", domains, 65535),
             gather=flag("gather", gather),
+            record=flag("record", record),
             response=word("response", response),
             broad_phase=word("broad_phase", broad_phase),
             walls=corners,

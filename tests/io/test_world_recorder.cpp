@@ -217,6 +217,26 @@ TEST_CASE(
   CHECK(data["bodies"][1]["motion"] == json::parse("[[4,0,5,0]]"));
 }
 
+TEST_CASE("recorder: a body that enters later is drawn from then on, and one body can be looked at") {
+  const WorldOptions options;
+  WorldRecorder<Line> recorder(options);
+  World<1> world(options, &recorder);
+  world.add_body({.shape = Sphere{1}, .motion = {Line::line({0, 9, 0}, {0, 1, 0}, 6)}});
+  recorder.look(world);
+  world.advance_to(2);
+  const BodyId second = world.add_body({.shape = Sphere{1}, .motion = {Line::line({5, 0, 0}, {0, 0, 0}, 2)}});
+  recorder.look(world, second);
+  world.advance_to(4);
+  world.remove_body(second);
+  recorder.look(world, second);
+  world.advance_to(8);
+  const json data = json::parse(recorder.to_json(world, "later"));
+  REQUIRE(data["bodies"].size() == 2);
+  CHECK(data["bodies"][0]["motion"] == json::parse("[[6,0,9,0,0,1,0]]"));
+  CHECK(data["bodies"][1]["motion"] == json::parse("[[2,5,0,0]]"));
+  CHECK(data["bodies"][1]["until"] == 4);
+}
+
 TEST_CASE("recorder: a record begins again from the state that a world is restored to") {
   const WorldOptions options;
   WorldRecorder<Line> recorder(options);

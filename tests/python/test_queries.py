@@ -94,6 +94,68 @@ class Queries(unittest.TestCase):
         self.assertGreater(len(foretold), 20)
         self.assertEqual(foretold, happened)
 
+    def test_all_that_will_be_met(self):
+        world, positions, radii, random = balls(6)
+        until, velocities = world.now + 3, world.velocities()
+        met_in_all = 0
+        for body in range(20):
+            hits = world.next_contacts_of(body, until=until, mode="transparent")
+            self.assertTrue((np.diff(hits.time) >= 0).all())
+            # Those whose centres come nearer than the sum of the radii.
+            x, v = positions - positions[body], velocities - velocities[body]
+            with np.errstate(invalid="ignore"):
+                nearest = np.clip(np.nan_to_num(-(x * v).sum(1) / (v * v).sum(1)), 0, 3)
+            apart = np.linalg.norm(x + v * nearest[:, None], axis=1) - radii - radii[body]
+            apart[body] = np.inf
+            self.assertEqual(sorted(hits.a.tolist()), np.flatnonzero(apart < 0).tolist())
+            self.assertGreater(np.abs(apart).min(), ERROR)
+            first = world.next_contact_of(body, until=until, mode="transparent")
+            self.assertEqual(None if first is None else first.tobytes(), hits[0].tobytes() if len(hits) else None)
+            met_in_all += len(hits)
+            # The same of a ball that is in no world, beside the one that it is a copy of.
+            copy = world.next_contacts(kds.sphere(radii[body]), positions[body], velocities[body], until=until)
+            self.assertEqual(sorted(copy.a.tolist()), sorted(hits.a.tolist() + [body]))
+            # All that it meets is near its way.
+            low, high = positions[body] - radii[body], positions[body] + radii[body]
+            near = world.in_moving_box(low, high, velocities[body], until=until)
+            self.assertLessEqual(set(copy.a.tolist()), set(near.tolist()))
+            self.assertLess(len(near), 300)
+        self.assertGreater(met_in_all, 30)
+        with self.assertRaisesRegex(ValueError, "mode: must be 'resolved' or 'transparent'"):
+            world.next_contact_of(0, until=until, mode="elastic")
+        with self.assertRaisesRegex(ValueError, "high: must not be below low"):
+            world.in_moving_box((0, 0, 0), (1, -1, 1), until=until)
+
+    def test_all_pairs(self):
+        world, positions, radii, random = balls(7)
+        a, b = np.triu_indices(300, 1)
+        touching = np.linalg.norm(positions[a] - positions[b], axis=1) < radii[a] + radii[b]
+        pairs = np.stack([a, b], axis=1)
+        self.assertEqual(world.contact_pairs().tolist(), pairs[touching].tolist())
+        self.assertGreater(touching.sum(), 20)
+        until, velocities = world.now + 2, world.velocities()
+        x, v = positions[a] - positions[b], velocities[a] - velocities[b]
+        when = np.clip(-(x * v).sum(1) / (v * v).sum(1), 0, 2)
+        apart = np.linalg.norm(x + v * when[:, None], axis=1)
+        near = world.pairs_nearer_than(0.5, until=until)
+        self.assertEqual(near.dtype.names, ("a", "b", "time", "distance"))
+        self.assertEqual({(int(p.a), int(p.b)) for p in near}, set(map(tuple, pairs[apart < 0.5].tolist())))
+        self.assertGreater(len(near), 50)
+        self.assertTrue((np.diff(near.time) >= 0).all())
+        for pair in near:
+            self.assertEqual(world.closest_approach(pair.a, pair.b, until=until), (pair.time, pair.distance))
+        odd = world.pairs_nearer_than(0.5, until=until, filter=lambda body: body % 2 == 1)
+        self.assertEqual(odd.tolist(), [pair.tolist() for pair in near if pair.a % 2 == 1 and pair.b % 2 == 1])
+        with self.assertRaisesRegex(ValueError, "distance"):
+            world.pairs_nearer_than(0, until=until)
+        self.assertEqual(kds.World().contact_pairs().shape, (0, 2))
+
+    def test_what_a_sensor_moves_with(self):
+        world = kds.World()
+        ball = world.add_body(kds.sphere(1), (0, 0, 0))
+        alarm = world.attach_sensor(ball, kds.sphere(2))
+        self.assertEqual((world.attached_to(alarm), world.attached_to(ball)), (ball, None))
+
     def test_shapes_that_are_in_no_world(self):
         world = kds.World()
         target = world.add_body(kds.box((1, 1, 1)), (5, 0, 0), (-1, 0, 0))

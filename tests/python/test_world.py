@@ -150,7 +150,9 @@ class Bulk(unittest.TestCase):
         world = kds.World()
         a = world.add_body(kds.sphere(1), (0, 0, 0), then=[kds.Motion(2, (0, 0, 0), (1, 0, 0))])
         b = world.add_body(kds.sphere(1), (4, 0, 0), start=1)
-        self.assertEqual(world.bodies.tolist(), [a])
+        self.assertEqual(world.bodies.tolist(), [a, b])  # b too, which enters later
+        np.testing.assert_array_equal(world.positions(), [[0, 0, 0], [4, 0, 0]])
+        self.assertEqual(world.in_box((-9, -9, -9), (9, 9, 9)).tolist(), [a])
         events = world.advance_to(10)
         self.assertEqual([(e.time, e.kind, e.a, e.b) for e in events], [(4, 0, a, b), (8, 1, a, b)])
         self.assertEqual(world.bodies.tolist(), [a, b])
@@ -182,6 +184,31 @@ class Bulk(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "half-space does not turn"):
             world.update_motions([rod, floor], angular_velocities=[(0, 0, 3), (0, 0, 1)])
         np.testing.assert_array_equal(world.angular_velocities([rod]), before)
+
+
+    def test_budgets_change_nothing(self):
+        whole, data = gas(300, 8)
+        whole.add_bodies(None, **data)
+        divided, _ = gas(300, 8)
+        divided.add_bodies(None, **data)
+        events, calls = [], 0
+        while not divided.advance_for(0, 1):
+            calls += 1
+            events.append(divided.take_events())
+        events.append(divided.take_events())
+        self.assertEqual(divided.now, 1)
+        expected = whole.advance_to(1)
+        self.assertGreater(len(expected), 50)
+        self.assertGreaterEqual(calls, len(expected))
+        self.assertEqual(b"".join(part.tobytes() for part in events), expected.tobytes())
+        self.assertTrue(divided.advance_for(60, 1.5))
+        for wrong in (-1, np.nan):
+            with self.assertRaisesRegex(ValueError, "budget: must be >= 0"):
+                divided.advance_for(wrong, 2)
+        with self.assertRaisesRegex(ValueError, "advance_for"):
+            divided.advance_for(1, 1)  # is over
+        with self.assertRaisesRegex(RuntimeError, "in domains goes by advance_to"):
+            kds.World(domains=2).advance_for(1, 1)
 
 
 class Callbacks(unittest.TestCase):

@@ -17,6 +17,7 @@ struct Way {
   BroadPhaseKind method = BroadPhaseKind::automatic;
   bool budgets = false;
   bool snapshots = false;
+  std::size_t room = 0;  ///< for so many bodies from the beginning
 };
 struct Result {
   std::vector<Event> events;
@@ -37,6 +38,7 @@ Result run(Response response, const Way& way) {
   Result result;
   EventLog<2> log;
   auto world = std::make_unique<World<2>>(options, &log);
+  world->reserve(way.room);
   Random random(7);
   const auto vector = [&](double most) {
     return Vector3d(random.between(-most, most), random.between(-most, most), random.between(-most, most));
@@ -89,6 +91,40 @@ TEST_CASE("What is done for budgets gives the log that is made in one go") {
       CHECK(parts.events == whole.events);
     }
   }
+}
+
+TEST_CASE("Room that is made beforehand changes no event, whenever it is made and for however many") {
+  const Result whole = run(Response::elastic, {});
+  for (const auto method : {BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap}) {
+    for (const std::size_t room : {std::size_t{40}, bodies, 5 * bodies}) {
+      CAPTURE(static_cast<int>(method), room);
+      CHECK(run(Response::elastic, {method, false, false, room}).events == whole.events);
+      CHECK(run(Response::elastic, {method, true, true, room}).events == whole.events);
+    }
+  }
+  // In the middle, and where bodies become so few that another broad phase takes over, and many again.
+  EventLog<1> log, log_of_other;
+  World<1> world(with_response(Response::none), &log), other(with_response(Response::none), &log_of_other);
+  Random random(8);
+  for (int round = 0; round < 4; ++round) {
+    for (int i = 0; i < 200; ++i) {
+      const auto place = [&] { return random.between(-10, 10); };
+      const auto added = ball<1>(1, {place(), place(), place()}, {place(), place(), place()});
+      world.add_body(added), other.add_body(added);
+    }
+    world.reserve(static_cast<std::size_t>(300 * round));
+    for (World<1>* of : {&world, &other}) {
+      of->advance_to(of->now() + 0.1);
+      of->audit();
+      std::size_t left = of->size();
+      of->visit_bodies([&](BodyId id) {
+        if (left-- > 10) of->remove_body(id);
+      });
+      of->advance_to(of->now() + 0.1);
+    }
+  }
+  CHECK(log.events.size() > 400);
+  CHECK(log.events == log_of_other.events);
 }
 
 TEST_CASE("Some bodies that begin their motions at one time have, and the world can be edited, asked and saved") {
