@@ -81,7 +81,8 @@ class BasicWorld final {
 
   /// Makes room for this many bodies in all, in the broad phase too, at once: for a quarter of a microsecond a body.
   /// Never needed, but saves time and memory where many are added, and the long steps of advance_for() in which tables
-  /// grow. Changes no event. Throws std::length_error for more than there are slots.
+  /// grow; not to be called for each few of many. Changes no event. Throws std::length_error for more than there are
+  /// slots.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
