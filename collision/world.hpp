@@ -86,7 +86,8 @@ class BasicWorld final {
 
   /// Makes room for this many bodies in all, in the broad phase too, at once: for a quarter of a microsecond a body.
   /// Never needed, but saves time and memory where many are added, and the long steps of advance_for() in which tables
-  /// grow. Changes no event. Throws std::length_error for more than there are slots.
+  /// grow; not to be called for each few of many. Changes no event. Throws std::length_error for more than there are
+  /// slots.
   void reserve(std::size_t bodies);
 
   /// Removes a body. Its pairs end, and in mode `none` its contacts separate, with reports.
@@ -153,11 +154,11 @@ class BasicWorld final {
   /// less than a millisecond, as a rule. True if t was reached. The log is that of advance_to(), whatever the budgets.
   /// Not divided, so that they may exceed the budget, are a call of a listener, a heap that comes to rest, predictions
   /// beyond the end of a window, pieces that start at one time and are not the first of their bodies, the growth of a
-  /// table and the turn of a queue, which take some 0.2 us a body in the world. With reserve(), before bodies are added,
-  /// and the default broad phase the tables of bodies do not grow, only the list of pairs does. The methods `sap`,
-  /// `kinetic_sap` and `all_pairs` take time in proportion to the bodies for each small part that enters (figures in
-  /// docs/benchmarks.md). Throws as advance_to() does, and std::invalid_argument for a budget that is negative or not a
-  /// number.
+  /// table and the turn of a queue, which take some 0.2 us a body in the world. With reserve(), before bodies are
+  /// added, and the default broad phase the tables of bodies do not grow, only the list of pairs does. The methods
+  /// `sap`, `kinetic_sap` and `all_pairs` take time in proportion to the bodies for each small part that enters
+  /// (figures in docs/benchmarks.md). Throws as advance_to() does, and std::invalid_argument for a budget that is
+  /// negative or not a number.
   bool advance_for(double budget_seconds, double t);
 
   // A world is a KineticStructure: it runs in a Simulator beside others, one clock for all (docs/framework.md). Before

@@ -61,7 +61,8 @@ Ids add_rows(Held& self, const std::vector<PyShape>& shapes, const std::optional
   const std::size_t each = later.size() / std::max<std::size_t>(bodies, 1);
   std::vector<BodyId> ids;
   ids.reserve(bodies);
-  if (bodies > 1) world.reserve(world.size() + bodies);
+  // It takes as long as there are bodies: so not for each few of many that come.
+  if (bodies > 1 && 2 * bodies >= world.size()) world.reserve(world.size() + bodies);
   try {
     Description body;
     for (std::size_t i = 0; i < bodies; ++i) {

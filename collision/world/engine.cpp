@@ -78,7 +78,6 @@ template <class Motion>
 void Engine<Motion>::make_broad_phase() {
   const auto box_of = [this](BodySlot slot) { return volumes_.box(slot); };
   broad_phase_ = new_broad_phase<Motion::degree>(options_, clock_.now, profile(), box_of, volumes_.kdops());
-  broad_phase_->reserve(reserved_);
   broad_phase_->extend_horizon(clock_.now, clock_.horizon);
   expected_ = 0;
   pairs_.expect_exact(broad_phase_->exact());
@@ -88,6 +87,7 @@ void Engine<Motion>::make_broad_phase() {
 template <class Motion>
 void Engine<Motion>::rebuild_broad_phase() {
   make_broad_phase();
+  broad_phase_->reserve(reserved_);
   PairCollector found;
   std::vector<Entry> entries;
   std::vector<KineticBox<Motion::degree>> boxes;
