@@ -236,8 +236,8 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       return true;
     }
     if (is_due) {
-      if (looks && parts.at(due.place, [this](const auto& part) { return happens(part); })) return true;
-      if (parts.at(due.place, [this](auto& part) { return process(part); })) return true;
+      if (looks && parts.at(due.place, [&](const auto& part) { return this->happens(part); })) return true;
+      if (parts.at(due.place, [&](auto& part) { return this->process(part); })) return true;
       if (due.place == parts.template place_of<Resting>()) reached = clock_.now;  // Motions have changed.
     } else if (next < limit) {
       // Without a limit: one window farther, and if nothing happens in that either, for all time.

@@ -37,7 +37,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -181,8 +180,7 @@ class Engine final : private RestingListener<BodyMotionType> {
     return PartList(self.scripts_, self.tumbling_, self.pairs_.box_times(), self.volumes_, self.timers_, self.walls_,
                     self.resting_, self.pairs_, self.self_contacts_, self.unbounded_);
   }
-  // What follows from the next event of a part, which is due. True if it ends a step; what is only reported does so by
-  // its report.
+  // What follows from the next event of a part, which is due. True if it ends a step (reports do so themselves).
   bool process(Scripts<Motion>&) { return start_pieces(), true; }
   bool process(Tumbling<Motion>&);
   bool process(BoxTimes<detail::PairRank>&) { return pairs_.process_boxes(), false; }
@@ -194,10 +192,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool process(SelfContacts<Motion>&) { return process_self_contact(), true; }
   bool process(Unbounded<Motion>&) { return false; }  // It has none.
   /// Whether an event that is due changes what can be observed.
-  template <class Part>
-  bool happens(const Part&) const {
-    return true;
-  }
+  bool happens(const auto&) const { return true; }
   bool happens(const Volumes<Motion>&) const { return volumes_.from_caller(volumes_.next_body()); }
   /// Whether the search for the next event processes it, or stops before it.
   enum class Search { makes, looks };

@@ -88,7 +88,8 @@ class PartList {
   template <class Part>
   static constexpr std::size_t place_of() {
     std::size_t place = 0;
-    ((std::is_same_v<std::remove_const_t<Parts>, Part> || (++place, false)) || ...);
+    bool found = false;
+    ((found = found || std::is_same_v<std::remove_const_t<Parts>, Part>, place += found ? 0 : 1), ...);
     return place;
   }
   /// How many parts there are up to the end of a stage.
