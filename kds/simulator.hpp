@@ -44,9 +44,10 @@ concept KineticStructure = requires(S& structure, const S& observed, double t) {
 /// The horizon is the simulator's: it is the same for all structures, which are told of it when the simulator is made
 /// and whenever it changes. What a structure knows of later times makes no difference.
 ///
-/// A structure that is due before the clock (it was changed at an earlier time), or whose own clock is ahead (it was
-/// advanced by itself), would turn the order of events round: step(), advance_to() and next_time() throw
+/// A structure that has an event before the clock (it was changed at an earlier time), or whose own clock is ahead (it
+/// was advanced by itself), would turn the order of events round: step(), advance_to() and next_time() throw
 /// std::logic_error, before anything is done. In the first case it can be brought up to the clock and the run goes on.
+/// Work that it has put off at the time of its own clock is no event: a step does it.
 ///
 /// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
 /// on top of the structure's own work. All times are in seconds.
@@ -70,7 +71,7 @@ class Simulator {
 
   /// Time of the next event within the horizon, `never` if there is none. The clock, if a structure has put off work: a
   /// step does that first.
-  double next_time() const { return next().first; }
+  double next_time() const { return next().time; }
 
   /// Keeps only events up to `window` seconds ahead. Whenever the clock goes beyond, the structures certify again for
   /// another window. Infinite (the default) predicts everything; a step() without a limit does so too, and from then
@@ -88,10 +89,12 @@ class Simulator {
     require_clocks(std::index_sequence_for<Structures...>{});
     for (;;) {
       if (limit > horizon_) look_ahead(limit);
-      const auto [time, index] = next();
-      if (!(time <= limit) || time == never) return false;
-      now_ = time;
-      if (process(index, std::index_sequence_for<Structures...>{})) return true;
+      const Next found = next();
+      if (!(found.time <= limit) || found.time == never) return false;
+      now_ = found.time;
+      if (!process(found.index, std::index_sequence_for<Structures...>{})) continue;
+      if (found.behind) refuse(found.index, "had an event before it: it was changed at that time");
+      return true;
     }
   }
 
@@ -142,18 +145,35 @@ class Simulator {
   }
 
  private:
-  std::pair<double, std::size_t> next() const {
-    std::pair<double, std::size_t> first{never, 0};
+  struct Next {
+    double time;
+    std::size_t index;    ///< of the structure
+    bool behind = false;  ///< it has put off work of a time before the clock
+  };
+  Next next() const {
+    Next first{never, 0};
     std::size_t index = 0;
-    std::apply(
-        [&](const auto&... s) {
-          ((s.next_time() < first.first ? void(first = {s.next_time(), index}) : void(), ++index), ...);
-        },
-        structures_);
-    if (first.first < now_) [[unlikely]]
-      refuse(first.second, "is due at " + std::to_string(first.first) + ": it was changed at a time before the clock");
+    const auto consider = [&](const auto& structure) {
+      if (const double time = structure.next_time(); time < first.time) first = {time, index, behind(structure, time)};
+      ++index;
+    };
+    std::apply([&](const auto&... s) { (consider(s), ...); }, structures_);
+    if (first.behind) first.time = now_;
+    if (first.time < now_) [[unlikely]]
+      refuse(first.index, "is due at " + std::to_string(first.time) + ": it was changed at a time before the clock");
     // A structure may know of events beyond the horizon, where others do not know of theirs.
-    return first.first <= horizon_ ? first : std::pair{never, std::size_t{0}};
+    return first.time <= horizon_ ? first : Next{never, 0};
+  }
+  template <class Structure>
+  bool behind(const Structure& structure, double time) const {
+    if constexpr (requires {
+                    requires std::same_as<decltype(std::declval<Structure&>().process()), bool>;
+                    { structure.now() } -> std::same_as<double>;
+                  }) {
+      return time < now_ && time == structure.now();
+    } else {
+      return false;
+    }
   }
 
   template <std::size_t... I>
