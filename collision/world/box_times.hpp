@@ -24,6 +24,7 @@ class BoxTimes : public DaryQueue<Rank> {  // slots are pairs
     if (next_time() < t) throw AuditFailure("World: the boxes of a pair should have met or parted");
   }
 
+  /// None: the times are those that Pairs saves.
   struct Image : NoImage {};
   static Image image() { return {}; }
   static void become(const Image&) {}
