@@ -101,6 +101,15 @@ std::vector<std::pair<std::string, Shape>> solids(double radius) {
           {"compound", compound_of(Box{half})}};
 }
 
+/// Its sides lean inwards; its centre of mass is its origin.
+Shape pyramid(double radius) {
+  std::vector<Vector3d> points{{0, 0, 3 * radius}};
+  for (const double x : {-radius, radius}) {
+    for (const double y : {-radius, radius}) points.emplace_back(x, y, -radius);
+  }
+  return convex_hull(points);
+}
+
 template <class Motion>
 void check_stays(const std::string& floor_name, const std::pair<Shape, Vector3d>& floor, const std::string& name,
                  const Shape& shape, double radius, const Vector3d& origin, double enters) {
@@ -167,7 +176,9 @@ template <class Motion>
 void check_all_stay() {
   for (const auto& [floor_name, floor] : floors()) {
     for (const double radius : {7.3, 0.5, 0.028, 1e-3}) {
-      for (const auto& [name, shape] : solids(radius)) {
+      auto shapes = solids(radius);
+      shapes.emplace_back("pyramid", pyramid(radius));
+      for (const auto& [name, shape] : shapes) {
         check_stays<Motion>(floor_name, floor, name, shape, radius, Vector3d::Zero(), 0);
         check_stays<Motion>(floor_name, floor, name, shape, radius, Vector3d(1000.3, -200.7, 55.1), 0.5);
       }

@@ -113,8 +113,8 @@ Eigen::Vector3d outward(const Side& side, const Points& points) {
 /// middle of what they share, or where that does not approach but another does, the corner of it that approaches
 /// fastest.
 ///
-/// A triangle of the surface of a solid is not pushed out of that solid: a face that lies in a plane up to roundings
-/// may be less deep in it on the far side.
+/// A triangle of the surface of a solid is not pushed out of that solid along its own normal: a face that lies in a
+/// plane up to roundings may be less deep in it on the far side.
 ///
 /// They approach if they do so along all directions in which they are no deeper than roundings. A body that slides on a
 /// face, and is in it by a rounding, meets the walls below that face from inside: these must not stop it.
@@ -137,7 +137,7 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair&
     return touch;
   };
   const Eigen::Vector3d out_of_b = detail::outward(b, seen.b);
-  const double least = parallel_sine * norm(out_of_b);
+  const double least = (1 - 0x1p-20) * norm(out_of_b);  // Across an edge there are others than along its two faces.
   const auto every_gap = [&](const auto& visit) {
     pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
       if (!(dot(way.normal, out_of_b) > least)) visit(way);
