@@ -36,8 +36,8 @@ RunLock::RunLock(const std::filesystem::path& file, std::size_t rank) : path_(lo
       throw OutputError(file.string() + ": file: is written by another run, which has not ended", true);
     }
     // A run that has ended meanwhile may have removed the file that was opened here.
-    struct stat opened {
-    }, there{};
+    struct stat opened {};
+    struct stat there {};
     if (fstat(descriptor_, &opened) == 0 && stat(path_.c_str(), &there) == 0 && opened.st_ino == there.st_ino &&
         opened.st_dev == there.st_dev) {
       return;

@@ -160,13 +160,17 @@ class TurningHulls {
       visit(Widest{2 * k + 1, gaps[1], n});
     }
   }
-  /// The way along which they are farthest apart.
-  Widest widest(const Seen& seen) const {
+  /// The way along which they are farthest apart, of those for which counts(way).
+  template <class Counts>
+  Widest widest(const Seen& seen, const Counts& counts) const {
     Widest best;
     every_gap(seen, [&](const Widest& way) {
-      if (way.gap > best.gap) best = way;
+      if (way.gap > best.gap && counts(way)) best = way;
     });
     return best;
+  }
+  Widest widest(const Seen& seen) const {
+    return widest(seen, [](const Widest&) { return true; });
   }
 
  protected:

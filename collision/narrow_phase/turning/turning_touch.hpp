@@ -137,20 +137,14 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair&
     return touch;
   };
   const Eigen::Vector3d out_of_b = detail::outward(b, seen.b);
-  const double least = (1 - 0x1p-20) * norm(out_of_b);  // Across an edge there are others than along its two faces.
-  const auto every_gap = [&](const auto& visit) {
-    pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
-      if (!(dot(way.normal, out_of_b) > least)) visit(way);
-    });
-  };
-  typename Hulls::Widest widest;
-  every_gap([&](const typename Hulls::Widest& way) {
-    if (way.gap > widest.gap) widest = way;
-  });
+  // Directions up to a thousandth of a radian from the normal. At an edge others, too, lead out of one of its faces.
+  const double along_normal = (1 - 0x1p-20) * norm(out_of_b);
+  const auto counts = [&](const typename Hulls::Widest& way) { return !(dot(way.normal, out_of_b) > along_normal); };
+  const auto widest = pair.widest(seen, counts);
   TurningTouch touch = along(widest.normal);
   const double roundings = pair.roundings(view);
-  every_gap([&](const typename Hulls::Widest& way) {
-    if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0)) return;
+  pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
+    if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0) || !counts(way)) return;
     touch.approach = std::min(touch.approach, along(way.normal).approach);
   });
   return touch;
