@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/mesh_and_hull.hpp"
 
+#include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
@@ -16,12 +17,15 @@ using Eigen::Vector3d;
 
 const Polytope& polytope(const PlacedShape& shape) { return *std::get<ConvexHull>(shape.shape).polytope; }
 
-/// Whether a corner of the mesh is inside of the hull, in doubles: asked where the surfaces are apart.
+/// Whether a corner of the mesh is inside of the hull, in doubles: asked where the surfaces are apart. Just after they
+/// have parted that is by hardly more than the contact gap, which is of the relative motion, so the places are, too:
+/// far from the origin the difference of two rounded places is off by many gaps.
 template <int Degree>
 bool holds_a_corner(const TranslatingShape<Degree>& hull, const TranslatingShape<Degree>& mesh, double t) {
   const MeshShape& shape = std::get<MeshShape>(mesh.shape.shape);
   const Polytope& solid = polytope(hull.shape);
-  const Vector3d apart = mesh.motion.position(t) - hull.motion.position(t);
+  const RelativeMotion<Degree> motion = relative_to(hull.motion, mesh.motion);
+  const Vector3d apart = motion.position(std::max(t - motion.epoch, 0.0));
   const auto inside = [&](std::uint32_t vertex) {
     const Vector3d x = apart + placed_vertex(mesh.shape.rotation, shape.scale, shape.mesh->vertices()[vertex]);
     if ((x.array() > hull.shape.high.array()).any() || (x.array() < hull.shape.low.array()).any()) return false;

@@ -6,6 +6,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -121,6 +123,38 @@ TEST_CASE("what is inside of a hull is in contact with it until it has come out"
   REQUIRE(log.of(Kind::overlap).size() == 1);
   REQUIRE(log.of(Kind::separation).size() == 1);
   CHECK(log.of(Kind::separation)[0].time() == Approx(2).margin(1e-9));
+}
+
+/// When a mesh that passes through a hull ceases to touch it, with all of that moved by `away` along each axis.
+std::vector<double> partings(std::uint64_t seed, double away) {
+  samples::Random random(seed);
+  const auto coarse = [&](double high) {  // and so exact wherever it is
+    return Vector3d(random.vector(high).unaryExpr([](double x) { return std::round(x * 256) / 256; }));
+  };
+  const Vector3d place = coarse(1) + Vector3d::Constant(away);
+  auto passing = body<1>(MeshShape{samples::ball_mesh(0), 1}, motion<1>(place, coarse(2)));
+  passing.orientation = random.orientation();
+  EventLog<1> log;
+  World<1> world({}, &log);
+  world.add_body(body<1>(convex_hull(box_corners({1, 1, 0.5})), motion<1>(Vector3d::Constant(away))));
+  world.add_body(passing);
+  world.advance_to(20);
+  std::vector<double> times;
+  for (const Event& event : log.of(Kind::separation)) times.push_back(event.time());
+  return times;
+}
+
+TEST_CASE("far from the origin a mesh parts from a hull when it does near it", "[world][hull]") {
+  std::size_t parted = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    const std::vector<double> near = partings(seed, 0);
+    const std::vector<double> far = partings(seed, 0x1p17);
+    REQUIRE(far.size() == near.size());
+    for (std::size_t i = 0; i < near.size(); ++i) CHECK(far[i] == Approx(near[i]).margin(1e-6));
+    parted += near.size();
+  }
+  CHECK(parted > 50);
 }
 
 TEST_CASE("hulls are saved and go on as they would have", "[world][hull][snapshot]") {
