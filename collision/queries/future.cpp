@@ -4,6 +4,7 @@
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
+#include "collision/queries/standing_body.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/checked_pieces.hpp"
 
@@ -23,12 +24,6 @@ void require_span(const char* function, const BasicWorld<Motion>& world, double 
   if (until >= world.now() && until < never) return;
   throw std::invalid_argument(std::string(function) + ": " + std::to_string(until) +
                               " is not a finite time from now on (" + std::to_string(world.now()) + ")");
-}
-
-/// Bodies that enter later are not there.
-template <class Motion>
-bool entered(const BasicWorld<Motion>& world, BodyId body) {
-  return path_of(world.motion(body)).start <= world.now();
 }
 
 /// A box that moves with a shape and contains it in any orientation that it takes, with room for the margin within
@@ -150,7 +145,7 @@ template <class Motion>
 std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
                                    ContactMode mode) {
   require_span("next_contact_of", world, until);
-  if (!entered(world, body)) return std::nullopt;
+  if (!detail::entered(world, body)) return std::nullopt;
   const PlacedShape shape = world.shape(body);
   return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
                    [&](BodyId id) { return id != body && detail::accepts(filter, id); });
@@ -160,7 +155,7 @@ template <class Motion>
 std::vector<Hit> next_contacts_of(const BasicWorld<Motion>& world, BodyId body, double until, const BodyFilter& filter,
                                   ContactMode mode) {
   require_span("next_contacts_of", world, until);
-  if (!entered(world, body)) return {};
+  if (!detail::entered(world, body)) return {};
   const PlacedShape shape = world.shape(body);
   return all_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
                  [&](BodyId id) { return id != body && detail::accepts(filter, id); });
@@ -171,7 +166,7 @@ std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, Bod
                                             ContactMode mode) {
   require_span("next_contact_between", world, until);
   if (a == b) throw std::invalid_argument("next_contact_between: a body does not meet itself");
-  if (!entered(world, a) || !entered(world, b)) return std::nullopt;
+  if (!detail::entered(world, a) || !detail::entered(world, b)) return std::nullopt;
   const PlacedShape shape_a = world.shape(a);
   const PlacedShape shape_b = world.shape(b);
   return meeting(MovingShape<Motion>{shape_a, world.motion(a)}, MovingShape<Motion>{shape_b, world.motion(b)},
@@ -181,6 +176,7 @@ std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, Bod
 template <class Motion>
 Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until) {
   require_span("closest_approach", world, until);
+  for (const BodyId id : {a, b}) detail::require_entered("closest_approach", world, id);
   return closest_approach(path_of(world.motion(a)), path_of(world.motion(b)), world.now(), until);
 }
 

@@ -49,7 +49,8 @@ template <class Motion>
 std::optional<Contact> next_contact_between(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until,
                                             ContactMode mode = ContactMode::resolved);
 
-/// When the centres of two bodies of the world are nearest in [now(), until]: approach.hpp, of their paths.
+/// When the centres of two bodies of the world are nearest in [now(), until]: approach.hpp, of their paths. Throws
+/// std::invalid_argument where one of them has not entered.
 template <class Motion>
 Approach closest_approach(const BasicWorld<Motion>& world, BodyId a, BodyId b, double until);
 

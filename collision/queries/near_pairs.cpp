@@ -1,6 +1,7 @@
 #include "collision/queries/near_pairs.hpp"
 
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/queries/standing_body.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <algorithm>
@@ -56,7 +57,7 @@ std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double 
   std::vector<BodyId> bodies;
   double offset = 0;
   world.visit_bodies([&](BodyId id) {
-    if (!(path_of(world.motion(id)).start <= now) || !detail::accepts(filter, id)) return;
+    if (!detail::entered(world, id) || !detail::accepts(filter, id)) return;
     const PlacedShape shape = world.shape(id);
     if (unbounded(shape.shape)) return;
     bodies.push_back(id);

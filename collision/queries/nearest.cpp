@@ -115,6 +115,7 @@ std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const PlacedShape
 
 template <class Motion>
 ShapeDistance distance_between(const BasicWorld<Motion>& world, BodyId a, BodyId b) {
+  for (const BodyId id : {a, b}) detail::require_entered("distance_between", world, id);
   const detail::StandingBody of_a = detail::standing_body(world, a), of_b = detail::standing_body(world, b);
   ShapeDistance found = shape_distance(of_a.shape, of_b.shape, of_b.centre - of_a.centre);
   found.of_a += of_a.centre;

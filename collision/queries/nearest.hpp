@@ -42,7 +42,7 @@ std::vector<NearBody> nearest(const BasicWorld<Motion>& world, const PlacedShape
                               std::size_t count, const BodyFilter& filter = {});
 
 /// How far two bodies of the world are apart at now(), with a point of each, in the world's coordinates:
-/// shape_distance(). Throws std::invalid_argument where one is not in the world.
+/// shape_distance(). Throws std::invalid_argument where one of them has not entered.
 template <class Motion>
 ShapeDistance distance_between(const BasicWorld<Motion>& world, BodyId a, BodyId b);
 

@@ -1,4 +1,5 @@
-// A body as it stands at now(): where it is, and its shape as it is turned and bent; and what is a place at all.
+// A body as it stands at now(): whether it has entered, where it is, and its shape as it is turned and bent. And what
+// is a place at all.
 #pragma once
 
 #include "collision/motions.hpp"
@@ -22,6 +23,20 @@ namespace kds::collision::detail {
 inline void require_in_range(const char* function, const Eigen::Vector3d& at) {
   if ((at.array().abs() <= largest_magnitude).all()) return;
   throw std::invalid_argument(std::string(function) + ": a coordinate is not a number from -2^205 to 2^205");
+}
+
+/// Bodies that enter later are not there.
+template <class Motion>
+bool entered(const BasicWorld<Motion>& world, BodyId id) {
+  return path_of(world.motion(id)).start <= world.now();
+}
+
+/// Throws std::invalid_argument, naming the function, for a body that is not there yet.
+template <class Motion>
+void require_entered(const char* function, const BasicWorld<Motion>& world, BodyId id) {
+  if (entered(world, id)) return;
+  throw std::invalid_argument(std::string(function) + ": body " + std::to_string(id) + " enters later, at " +
+                              std::to_string(path_of(world.motion(id)).start));
 }
 
 struct StandingBody {

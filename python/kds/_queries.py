@@ -165,7 +165,8 @@ class Queries:
         ).view(np.recarray)
 
     def distance_between(self, a: int, b: int) -> Distance:
-        """How far apart two bodies are now, and where they are nearest to each other."""
+        """How far apart two bodies are now, and where they are nearest to each other. ValueError for one that is to
+        enter later."""
         return Distance(*self._core.distance_between(identity("a", a), identity("b", b)))
 
     def next_contact(
@@ -251,7 +252,8 @@ class Queries:
         return _first(self._core.next_contact_between(*pair, number("until", until), word("mode", mode)))
 
     def closest_approach(self, a: int, b: int, *, until: float) -> Approach:
-        """When the centres of two bodies are nearest, up to `until`, and how far apart then."""
+        """When the centres of two bodies are nearest, up to `until`, and how far apart then. ValueError for one that is
+        to enter later."""
         return Approach(*self._core.closest_approach(identity("a", a), identity("b", b), number("until", until)))
 
     def pairs_nearer_than(self, distance: float, *, until: float, filter: Filter | None = None) -> np.recarray:

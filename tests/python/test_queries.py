@@ -195,6 +195,11 @@ class Queries(unittest.TestCase):
         b = world.add_body(kds.sphere(0.1), (4, 3, 0), (-1, 0, 0))
         self.assertEqual(world.closest_approach(a, b, until=10), kds.Approach(2.0, 3.0))
         self.assertEqual(world.closest_approach(a, b, until=1).time, 1.0)
+        c = world.add_body(kds.sphere(0.1), (4, 3, 0), (-1, 0, 0), start=5)
+        with self.assertRaisesRegex(ValueError, f"body {c} enters later, at 5"):
+            world.closest_approach(a, c, until=10)
+        with self.assertRaisesRegex(ValueError, f"body {c} enters later, at 5"):
+            world.distance_between(c, a)
 
     def test_how_far_apart(self):
         world = kds.World()

@@ -1,6 +1,8 @@
 // What will meet what: the same times as the world's own contacts.
 #include "collision/queries/future.hpp"
 
+#include "collision/queries/near_pairs.hpp"
+#include "collision/queries/nearest.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
@@ -16,6 +18,7 @@
 namespace kds::collision::test_future {
 namespace {
 
+using Catch::Matchers::Contains;
 using Eigen::Vector3d;
 using samples::Random;
 
@@ -189,6 +192,14 @@ TEST_CASE("bodies that enter later are not there, neither of a pair nor for othe
   CHECK(!next_contact_between(world, a, b, 4));
   CHECK(!next_contact_of(world, b, 4));
   CHECK(!next_contact_of(world, a, 4));
+  // Their paths reach back to before they enter: the two would be nearest, and overlap, at 2.
+  CHECK_THROWS_WITH(closest_approach(world, a, b, 4), Contains("body 1 enters later, at 5"));
+  CHECK_THROWS_WITH(closest_approach(world, b, a, 4), Contains("body 1 enters later, at 5"));
+  CHECK_THROWS_WITH(distance_between(world, a, b), Contains("body 1 enters later, at 5"));
+  CHECK(pairs_nearer_than(world, 9, 4).empty());
+  world.advance_to(5);
+  CHECK(closest_approach(world, a, b, 6).distance == 3);
+  CHECK(distance_between(world, a, b).distance == 1);
 }
 
 TEST_CASE("a shape passes a mesh within the margin of its contacts: met as in a world") {
