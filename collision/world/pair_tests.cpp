@@ -238,7 +238,7 @@ void Pairs<Motion>::test(Slot slot) {
   ContactEstimate next{never, true};
   const ContactMode mode = this->mode(pair.a, pair.b);
   if (mode == ContactMode::transparent) {
-    if (pair.fresh && in_contact(a, b, clock_.now)) {
+    if (pair.fresh && !pair.overlapping && in_contact(a, b, clock_.now)) {
       pair.overlapping = true;
       report_overlap();
     }

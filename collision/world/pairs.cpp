@@ -53,9 +53,11 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   const Slot slot = overlapping != none ? overlapping : add(a, b);
   Pair& pair = pairs_[slot];
   pair.listed = true;
-  const bool jumps = begin_ == Begin::jumping || edits_.has_jumped(a, t) || edits_.has_jumped(b, t);
-  const bool fresh = begin_ == Begin::entering || newly_allowed(a, b) || (jumps && mode(a, b) == ContactMode::resolved);
-  pair.fresh = pair.fresh || fresh;
+  // A pair that overlaps is known, and its jumps too (motion_changed), however often filters change at this instant.
+  if (overlapping == none) {
+    const bool jumps = begin_ == Begin::jumping || edits_.has_jumped(a, t) || edits_.has_jumped(b, t);
+    pair.fresh = begin_ == Begin::entering || newly_allowed(a, b) || (jumps && mode(a, b) == ContactMode::resolved);
+  }
   ++counters_.pairs_begun;
   mark_dirty(slot);
   if (!options_.report_pairs) return;
