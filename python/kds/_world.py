@@ -31,7 +31,7 @@ class World(Running, Bodies, Edits, Queries):
         1.
     broad_phase: 'auto', 'grid', 'kinetic-sap', 'sap' (needs a rate, Hz) or 'all-pairs'. The events are the same.
     report_pairs: bounding volumes that begin and cease to overlap are events too. report_pieces: and pieces of motion
-        that start, but the first of a body that is there from the beginning.
+        that start, but the first of a body that is there from the beginning. Neither with domains.
     gather: whether events are kept for advance_to() and take_events(). record: whether what happens is recorded, from
         the first body on, for write_replay(), write_gltf() and write_vtk(); in some hundred bytes an event. Not with
         domains.
@@ -95,6 +95,10 @@ class World(Running, Bodies, Edits, Queries):
             orientation_error=number("orientation_error", orientation_error),
             most_edits=whole("most_edits", most_edits),
         )
+        if self._options["domains"] != 1:
+            for option in ("report_pairs", "report_pieces"):
+                if self._options[option]:
+                    raise ValueError(f"{option}: must be False in a world in domains, whose events have none of these")
         self._core = _kds.World(**self._options)
         self._degree = self._options["degree"]
         self._turning = self._options["turning"]

@@ -186,6 +186,8 @@ class Misuse(unittest.TestCase):
         self.refused("degree: must be 1 .* in domains, not 3", lambda: kds.World(3, domains=2))
         self.refused("domains: must be 1 where bodies turn", lambda: kds.World(turning=True, domains=0))
         self.refused("response", lambda: kds.World(domains=2, response="callbac"))
+        self.refused("report_pairs: must be False in a .* in domains", lambda: kds.World(domains=2, report_pairs=True))
+        self.refused("report_pieces: must be False in a .* in domains", lambda: kds.World(domains=0, report_pieces=True))
         self.refused("degree: must be a whole number", lambda: kds.World(1.5))
         self.refused("turning: must be True or False", lambda: kds.World(1, 2))
         self.refused("response: must be a string", lambda: kds.World(response=None))
