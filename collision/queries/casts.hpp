@@ -49,7 +49,8 @@ template <class Motion>
 std::vector<Hit> cast_all(const BasicWorld<Motion>& world, const PlacedShape& shape, const Ray& way,
                           const BodyFilter& filter = {});
 
-/// The bodies that a shape penetrates whose centre is at a point, in the order in which they were added.
+/// The bodies that a shape penetrates whose centre is at a point, in the order in which they were added. Not of a mesh
+/// that bends, nor of a half-space: what these penetrate, next_contacts() (future.hpp) tells, until now().
 template <class Motion>
 std::vector<BodyId> overlapping(const BasicWorld<Motion>& world, const PlacedShape& shape, const Eigen::Vector3d& at,
                                 const BodyFilter& filter = {});

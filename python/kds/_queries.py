@@ -138,7 +138,8 @@ class Queries:
         orientation: ArrayLike = UPRIGHT,
         filter: Filter | None = None,
     ) -> Ids:
-        """The bodies that a shape penetrates whose centre is at a point."""
+        """The bodies that a shape penetrates whose centre is at a point. Not of a half-space: what is in that,
+        next_contacts() tells, with `until` now."""
         turned = doubles("orientation", orientation, (4,))
         return self._core.overlapping(
             shape_of("shape", shape), turned, vector("position", position), _checked(filter)
