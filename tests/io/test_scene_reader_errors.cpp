@@ -295,6 +295,20 @@ TEST_CASE("scene reader: an error is one line, whatever the keys and names hold"
   CHECK(error == "sce ne.json: a b: unknown key");
 }
 
+TEST_CASE("scene reader: an error is UTF-8, whatever the bytes of the file are") {
+  const auto in_key = [](const std::string& key) { return "{\"scene\": 1, \"" + key + "\": 1}"; };
+  const std::string instead = "\xef\xbf\xbd";  // U+FFFD
+  CHECK(error_of(in_key("s\xf6"), "scene.json") ==
+        "scene.json: scene: line 1, column 15: syntax error while parsing object key - invalid string: ill-formed "
+        "UTF-8 byte; last read: '\"s" +
+            instead + "\"'; expected string literal");
+  CHECK(error_of("[\xff", "scene.json").find("last read: '[" + instead + "'") != std::string::npos);
+  CHECK(error_of("{}", "\xff.json").starts_with(instead + ".json: scene: "));
+  CHECK(error_of(in_key("caf\u00e9"), "scene.json") == "scene.json: caf\u00e9: unknown key");
+  // What begins another line, or tells a terminal something.
+  CHECK(error_of(in_key("a\u2028b\u0085c\u009bd"), "scene.json") == "scene.json: a b c d: unknown key");
+}
+
 TEST_CASE("scene reader: bad mesh files are named with mesh and place") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& mesh) {
