@@ -292,9 +292,9 @@ TEST_CASE("scene reader: an error is UTF-8, whatever the bytes of the file are")
   const auto in_key = [](const std::string& key) { return "{\"scene\": 1, \"" + key + "\": 1}"; };
   const std::string instead = "\xef\xbf\xbd";  // U+FFFD
   CHECK(error_of(in_key("s\xf6"), "scene.json") ==
-        "scene.json: scene: line 1, column 15: syntax error while parsing object key - invalid string: ill-formed "
+        "scene.json: scene: line 1, column 16: syntax error while parsing object key - invalid string: ill-formed "
         "UTF-8 byte; last read: '\"s" +
-            instead + "\"'; expected string literal");
+            instead + "'; expected string literal");
   CHECK(error_of("[\xff", "scene.json").find("last read: '[" + instead + "'") != std::string::npos);
   CHECK(error_of("{}", "\xff.json").starts_with(instead + ".json: scene: "));
   CHECK(error_of(in_key("caf\u00e9"), "scene.json") == "scene.json: caf\u00e9: unknown key");
