@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kds::io {
