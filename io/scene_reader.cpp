@@ -263,7 +263,10 @@ Scene read_document(const JsonNode& root, const SceneSource& text, const std::fi
     root["end_time"].fail("must be >= " + number_text(scene.begin_time) + ", where the motion begins");
   }
   scene.end_time = until.value_or(scene.end_time);
-  each_body([&](const SceneBody& body, const MemberPath& path) { check_motion(body, scene, path); });
+  each_body([&](const SceneBody& body, const MemberPath& path) {
+    check_fixed(body, path);
+    check_motion(body, scene, path);
+  });
   return scene;
 }
 

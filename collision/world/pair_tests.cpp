@@ -9,6 +9,7 @@
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs.hpp"
+#include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 #include <array>
@@ -295,7 +296,9 @@ bool Pairs<Motion>::certify() {
   const auto& b = bodies_.mover(pair.b);
   if (a.radius > 0 && b.radius > 0) {
     const certificates::BallSeparation<Motion::degree> apart{a.motion, b.motion, a.radius, b.radius};
-    set_contact(slot, apart.first_approach(clock_.now, clock_.horizon));
+    const bool passes = mode(pair.a, pair.b) == ContactMode::transparent;
+    set_contact(slot, passes ? failure_time(apart, clock_.now, clock_.horizon)
+                             : apart.first_approach(clock_.now, clock_.horizon));
     return true;
   }
   FoundTouch found;

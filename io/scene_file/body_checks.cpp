@@ -51,6 +51,11 @@ void check_range(const SceneBody& body, const Scene& scene, const MemberPath& pa
 
 }  // namespace
 
+void check_fixed(const SceneBody& body, const MemberPath& path) {
+  if (body.fixed || !kds::collision::unbounded(body.shape)) return;
+  throw JsonError(path("fixed"), "a half-space has no mass: it has to be fixed");
+}
+
 void check_motion(const SceneBody& body, const Scene& scene, const MemberPath& path) {
   check_range(body, scene, path);
   if (scene.domain && scene.domain->reflects && !body.sensor) {

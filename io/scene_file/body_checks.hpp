@@ -24,6 +24,9 @@ Eigen::Quaterniond unit_quaternion(const Eigen::Quaterniond& q, const Fail& fail
   return q.normalized();
 }
 
+/// What has no bounds is fixed. Throws JsonError.
+void check_fixed(const SceneBody& body, const MemberPath& path);
+
 /// Every piece of the motion stays within the largest number while it holds and, where walls reflect, begins inside
 /// them. Throws JsonError.
 void check_motion(const SceneBody& body, const Scene& scene, const MemberPath& path);

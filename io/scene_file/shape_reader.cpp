@@ -35,7 +35,15 @@ Shape read_capsule(const JsonNode& node, const Meshes&) {
 Shape read_half_space(const JsonNode& node, const Meshes&) {
   const JsonNode half_space = node["half_space"];
   half_space.object({"normal", "offset"});
-  return kds::collision::HalfSpace{half_space["normal"].vector(), half_space["offset"].number()};
+  const kds::collision::HalfSpace shape{half_space["normal"].vector(), half_space["offset"].number()};
+  try {
+    kds::collision::place(shape, Eigen::Quaterniond::Identity());
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();  // "normal: ..."
+    const std::size_t colon = what.find(": ");
+    half_space[what.substr(0, colon)].fail(what.substr(colon + 2));
+  }
+  return shape;
 }
 
 Shape read_hull(const JsonNode& node, const Meshes&) {
@@ -64,11 +72,10 @@ Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const SceneMesh& m) { return m.name == name; });
   if (found == meshes.end()) node["mesh"].fail("there is no mesh \"" + name + "\" in \"meshes\"");
   const bool scaled = node.has("scale");
-  const double scale = scaled ? node["scale"].positive() : 1.0;
-  const std::string problem =
-      mesh_size_problem(found->mesh->bounding_radius() * scale, scaled ? "makes the mesh reach " : "reaches ");
+  const kds::collision::MeshShape shape{found->mesh, scaled ? node["scale"].positive() : 1.0};
+  const std::string problem = mesh_size_problem(shape, scaled);
   if (!problem.empty()) node[scaled ? "scale" : "mesh"].fail(problem);
-  return kds::collision::MeshShape{found->mesh, scale};
+  return shape;
 }
 
 kds::collision::CompoundPart read_part(const JsonNode& node, const Meshes& meshes) {
@@ -106,9 +113,9 @@ struct ShapeReader {
 };
 constexpr const char* one_shape =
     "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\", \"half_space\" and \"compound\"";
-constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},         {"box", read_box},
-                                         {"mesh", read_mesh_shape},       {"capsule", read_capsule},
-                                         {"hull", read_hull},             {"half_space", read_half_space},
+constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},    {"box", read_box},
+                                         {"mesh", read_mesh_shape},  {"capsule", read_capsule},
+                                         {"hull", read_hull},        {"half_space", read_half_space},
                                          {"compound", read_compound}};
 
 }  // namespace
@@ -119,11 +126,18 @@ Eigen::Quaterniond read_orientation(const JsonNode& node) {
   return unit_quaternion(q, [&](const std::string& what) { node.fail(what); });
 }
 
-std::string mesh_size_problem(double radius, std::string_view reaches) {
-  if (radius >= smallest_size && radius <= largest_number) return {};
-  const std::string limit =
-      radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
-  return std::string(reaches) + about(radius) + " from its origin; " + limit + " is supported";
+std::string mesh_size_problem(const kds::collision::MeshShape& shape, bool scaled) {
+  const double radius = shape.mesh->bounding_radius() * shape.scale;
+  if (!(radius >= smallest_size && radius <= largest_number)) {
+    const std::string limit =
+        radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
+    return (scaled ? "makes the mesh reach " : "reaches ") + about(radius) + " from its origin; " + limit +
+           " is supported";
+  }
+  const double edge = shape.mesh->shortest_edge() * shape.scale;
+  if (edge >= kds::collision::shortest_edge) return {};
+  return (scaled ? "makes an edge of the mesh " : "has an edge that is ") + about(edge) + " long; at least " +
+         about(kds::collision::shortest_edge) + " is supported";
 }
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {

@@ -7,7 +7,6 @@
 #include <Eigen/Geometry>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace kds::io {
@@ -18,7 +17,7 @@ kds::collision::Shape read_shape(const JsonNode& node, const std::vector<SceneMe
 /// A unit quaternion, w first. Throws JsonError.
 Eigen::Quaterniond read_orientation(const JsonNode& node);
 
-/// What is wrong with a mesh that reaches so far from its origin, or nothing; it begins with `reaches`, a verb.
-std::string mesh_size_problem(double radius, std::string_view reaches);
+/// What is wrong with the size of a mesh, or nothing. `scaled`: it is said of the scale, else of the mesh.
+std::string mesh_size_problem(const kds::collision::MeshShape& shape, bool scaled);
 
 }  // namespace kds::io

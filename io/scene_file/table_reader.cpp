@@ -97,7 +97,7 @@ class Shapes {
     auto* const mesh = std::get_if<kds::collision::MeshShape>(&shape);
     if (!mesh) rows.fail(row, "scale", "is for meshes only");
     mesh->scale *= rows.number(table.scale, "scale", row, 1, positive_problem);
-    const std::string problem = mesh_size_problem(mesh->mesh->bounding_radius() * mesh->scale, "makes the mesh reach ");
+    const std::string problem = mesh_size_problem(*mesh, true);
     if (!problem.empty()) rows.fail(row, "scale", problem);
     return shape;
   }

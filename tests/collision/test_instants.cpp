@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::collision::test_instants {
@@ -46,6 +47,22 @@ std::vector<std::string> told(const std::vector<Event>& events) {
   return result;
 }
 using Told = std::vector<std::string>;
+
+TEST_CASE("Balls that part again at the only double at which they penetrate are in contact there", "[instants]") {
+  constexpr double start = 1, spacing = 0x1p-52;  // of doubles from there on; the balls are nearest after 1.7 spacings
+  const auto log = with_each_broad_phase(false, [](World<1>& world) {
+    for (const auto& [x, speed] : {std::pair(0.0, 0.0), std::pair(-3.0, 1.75 / spacing)}) {
+      auto body = ball<1>(0.5, {x, 0, 0}, {speed, 0, 0});
+      body.motion[0].start = start;
+      world.add_body(body);
+    }
+    world.advance_to(2);
+  });
+  CHECK(told(log) == Told{"contact 0 1", "separation 0 1"});
+  REQUIRE(log.size() == 2);
+  CHECK(log[0].time() == start + 2 * spacing);
+  CHECK(log[1].time() == start + 3 * spacing);
+}
 
 TEST_CASE("A body that enters at the end of a frame takes nothing from the others", "[instants]") {
   // The swept boxes of the first two reach to 0.5, where the third enters; they meet at 0.5625.

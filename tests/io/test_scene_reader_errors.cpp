@@ -267,13 +267,6 @@ TEST_CASE("scene reader: what is not JSON is named with path, line and column") 
   CHECK(error_of(text, "scene.json") == error);
 }
 
-TEST_CASE("scene reader: a half-space does not turn") {
-  CHECK(error_of(R"({"scene": 1, "end_time": 1, "bodies": [
-    {"name": "floor", "shape": {"half_space": {"normal": [0,0,1], "offset": 0}}, "fixed": true,
-     "motion": [{"start": 0, "position": [[0,0,0]], "angular_velocity": [0,0,1]}]}]})",
-                 "scene.json") == "scene.json: bodies[0].motion[0].angular_velocity: a half-space does not turn");
-}
-
 TEST_CASE("scene reader: a file that cannot be read") {
   const TemporaryFolder folder;
   const auto error = [&](const std::string& name) {
@@ -293,6 +286,20 @@ TEST_CASE("scene reader: a file that cannot be read") {
 TEST_CASE("scene reader: an error is one line, whatever the keys and names hold") {
   const std::string error = error_of("{\"a\\nb\": 1, \"scene\": 1}", "sce\nne.json");
   CHECK(error == "sce ne.json: a b: unknown key");
+}
+
+TEST_CASE("scene reader: an error is UTF-8, whatever the bytes of the file are") {
+  const auto in_key = [](const std::string& key) { return "{\"scene\": 1, \"" + key + "\": 1}"; };
+  const std::string instead = "\xef\xbf\xbd";  // U+FFFD
+  CHECK(error_of(in_key("s\xf6"), "scene.json") ==
+        "scene.json: scene: line 1, column 16: syntax error while parsing object key - invalid string: ill-formed "
+        "UTF-8 byte; last read: '\"s" +
+            instead + "'; expected string literal");
+  CHECK(error_of("[\xff", "scene.json").find("last read: '[" + instead + "'") != std::string::npos);
+  CHECK(error_of("{}", "\xff.json").starts_with(instead + ".json: scene: "));
+  CHECK(error_of(in_key("caf\u00e9"), "scene.json") == "scene.json: caf\u00e9: unknown key");
+  // What begins another line, or tells a terminal something.
+  CHECK(error_of(in_key("a\u2028b\u0085c\u009bd"), "scene.json") == "scene.json: a b c d: unknown key");
 }
 
 TEST_CASE("scene reader: bad mesh files are named with mesh and place") {
@@ -329,6 +336,8 @@ TEST_CASE("scene reader: a mesh times its scale is of a size that is supported")
         "scene.json: bodies[0].shape.scale: makes the mesh reach 1e-40 from its origin; at least 1e-30 is supported");
   CHECK(error("1.2e30", "") ==
         "scene.json: bodies[0].shape.mesh: reaches 1.2e+30 from its origin; at most 1e+30 is supported");
+  CHECK(error("1 0 0\nv 1 1e-5", R"(, "scale": 1e-30)") ==
+        "scene.json: bodies[0].shape.scale: makes an edge of the mesh 1e-35 long; at least 7.70372e-34 is supported");
 }
 
 TEST_CASE("scene reader: no mutation of a valid scene breaks it") {

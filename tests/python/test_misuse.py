@@ -1,6 +1,8 @@
 """Wrong arguments are refused by name, and nothing is half done."""
 
 import math
+import os
+import tempfile
 import unittest
 
 import kds
@@ -245,6 +247,11 @@ class Misuse(unittest.TestCase):
             '{"scene": 1, "end_time": 1, "response": "none", "bodies": [{"name": "a", "shape": {"sphere": {"radius": 0}},'
             ' "motion": [{"start": 0, "position": [[0, 0, 0]]}]}]}'))  # fmt: skip
         self.refused("no-such-file.json", lambda: kds.Scene.read("no-such-file.json"))
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "latin-1.json")
+            with open(path, "wb") as file:
+                file.write('{"größe": 1}'.encode("latin-1"))
+            self.refused("latin-1.json: document: line 1, column 5: .*ill-formed UTF-8 byte", lambda: kds.Scene.read(path))
         self.refused("bodies", lambda: kds.generate_scene("unused.json", bodies=0))
 
     def test_structures(self):
