@@ -81,7 +81,10 @@ class FlushEntry {
   static constexpr Conditions all(int) { return ~Conditions{0}; }
   static constexpr Conditions unsure(const Frame&, int way, double) { return all(way); }
   bool known_to_separate_nothing(int way) const { return (needless_ >> way & 1) != 0; }
-  bool separates_nothing(int way) const { return known_to_separate_nothing(way); }
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes&) const {
+    return known_to_separate_nothing(way);
+  }
   static Frame frame(double t) { return {t}; }
   static double gaps(const Frame&, std::array<double, std::size_t{ways}>& gap) {
     gap.fill(0);

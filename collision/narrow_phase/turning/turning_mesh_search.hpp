@@ -171,9 +171,7 @@ class TurningMeshSearch {
   template <class Visit>
   void every_entry(NodePair leaves, const Pair& pair, const View& view, const Visit& visit) const {
     if constexpr (tells_triangles) {
-      // Of the ways of either plane: corners that are not surely on one side of it, nor on the other.
-      const unsigned near_a = pair.unsure(view, 0, 0) & pair.unsure(view, 1, 0);
-      const unsigned near_b = pair.unsure(view, 2, 0) & pair.unsure(view, 3, 0);
+      const auto [near_a, near_b] = pair.near_planes(view);
       if (std::popcount(near_a) < 2 && std::popcount(near_b) < 2) return;
       if (!a_.is_closed() || !b_.is_closed()) return;
       const typename Entry::Side a{motion_a_, a_.corners(leaves.a)}, b{motion_b_, b_.corners(leaves.b)};
