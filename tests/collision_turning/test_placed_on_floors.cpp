@@ -164,6 +164,9 @@ void check_all_stacks() {
       for (const auto& [low_name, low] : solids(radius)) {
         for (const auto& [high_name, high] : solids(radius)) {
           if (low_name == "capsule" || high_name == "capsule") continue;
+          // A mesh meets other floors in the middle of two triangles, not of a face: so crates rock, which takes long.
+          const bool rocks = std::is_same_v<Motion, RigidMotion<2>> && floor_name != "half-space";
+          if (rocks && (low_name == "mesh" || high_name == "mesh")) continue;
           check_stack<Motion>(floor_name, floor, low, high, radius, Vector3d(0.1, 0.2, 0));
         }
       }

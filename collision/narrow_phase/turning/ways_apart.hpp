@@ -41,15 +41,15 @@ struct ExactSigns {
 ///
 /// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way,
 /// conditions, test)`; `separates_nothing(way, vanishes)`, whether the way does not count: all of its conditions are
-/// zero at all times, as vanishes(certificate) tells, and `known_to_separate_nothing(way)`, where
-/// that is told at once; `frame(t)`, what is known in doubles; `gaps(frame, gap)`, which fills in a width for each way
-/// and returns an error, so that a way that is narrower than -error has a condition that is broken then;
-/// `fastest(frame, stretch)`, a bound on how fast widths change; `unsure(frame, way, stretch)`, the conditions that
-/// have to be looked at, and perhaps `unsure_while_open`, the same of a way whose conditions hold just after the time
-/// of the frame; perhaps `many_conditions`, if they are never all to be looked at; `apart_until(t, horizon)`, a proven
-/// time; `time_of_turning()`; perhaps `open_wait(frame, way, stretch)`, for how long a way that is open just after the
-/// time of the frame stays so for certain, `waits`, the same of each of its conditions by its number, and
-/// `stretch(frame, longest)`, how far these can be told.
+/// zero at all times, as vanishes(certificate) tells, and `known_to_separate_nothing(way)`, where that is told at once;
+/// `frame(t)`, what is known in doubles; `gaps(frame, gap)`, which fills in a width for each way and returns an error,
+/// so that a way that is narrower than -error has a condition that is broken then; `fastest(frame, stretch)`, a bound
+/// on how fast widths change; `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
+/// `unsure_while_open`, the same of a way whose conditions hold just after the time of the frame; perhaps
+/// `many_conditions`, if they are never all to be looked at; `apart_until(t, horizon)`, a proven time;
+/// `time_of_turning()`; perhaps `open_wait(frame, way, stretch)`, for how long a way that is open just after the time
+/// of the frame stays so for certain, `waits`, the same of each of its conditions by its number, and `stretch(frame,
+/// longest)`, how far these can be told.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
