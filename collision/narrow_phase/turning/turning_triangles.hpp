@@ -110,7 +110,13 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     const double error = this->error(view);
     const Eigen::Vector3d in_a = view.in_world_a(a.normals[0]), in_b = view.in_world_b(b.normals[0]);
     // Each normal and its plane are seen from the other body: then its corners need not be turned.
-    const Eigen::Vector3d seen_from_b = view.seen_from_b(in_a), seen_from_a = view.seen_from_a(in_b);
+    const auto turned_back = [](const Eigen::Matrix3d& m, const Eigen::Vector3d& x) {
+      return Eigen::Vector3d(m(0, 0) * x[0] + m(1, 0) * x[1] + m(2, 0) * x[2],
+                             m(0, 1) * x[0] + m(1, 1) * x[1] + m(2, 1) * x[2],
+                             m(0, 2) * x[0] + m(1, 2) * x[1] + m(2, 2) * x[2]);
+    };
+    const Eigen::Vector3d seen_from_b = turned_back(view.matrix_b, in_a);
+    const Eigen::Vector3d seen_from_a = turned_back(view.matrix_a, in_b);
     const double plane_a = dot(a.normals[0], a.points[0]) - dot(in_a, view.way.value);
     const double plane_b = dot(b.normals[0], b.points[0]) + dot(in_b, view.way.value);
     std::array<unsigned, 2> near{};

@@ -20,12 +20,9 @@ struct TurningView : PairFrame<Degree> {
 
   Eigen::Vector3d in_world_a(const Eigen::Vector3d& x) const { return times(this->matrix_a, x); }
   Eigen::Vector3d in_world_b(const Eigen::Vector3d& x) const { return times(this->matrix_b, x); }
-  /// A vector of the world, in the axes of a or b.
+  /// A vector of the world, in the axes of a.
   Eigen::Vector3d seen_from_a(const Eigen::Vector3d& x) const {
     return {dot(this->axis_a(0), x), dot(this->axis_a(1), x), dot(this->axis_a(2), x)};
-  }
-  Eigen::Vector3d seen_from_b(const Eigen::Vector3d& x) const {
-    return {dot(this->axis_b(0), x), dot(this->axis_b(1), x), dot(this->axis_b(2), x)};
   }
 
  private:
