@@ -163,8 +163,10 @@ void check_all_stacks() {
     for (const double radius : {0.5, 0.028}) {
       for (const auto& [low_name, low] : solids(radius)) {
         for (const auto& [high_name, high] : solids(radius)) {
-          // Equal meshes exactly above each other touch and do not meet (docs/turning.md).
-          if (low_name == "mesh" || high_name == "mesh" || low_name == "capsule" || high_name == "capsule") continue;
+          if (low_name == "capsule" || high_name == "capsule") continue;
+          // A mesh meets other floors in the middle of two triangles, not of a face: so crates rock, which takes long.
+          const bool rocks = std::is_same_v<Motion, RigidMotion<2>> && floor_name != "half-space";
+          if (rocks && (low_name == "mesh" || high_name == "mesh")) continue;
           check_stack<Motion>(floor_name, floor, low, high, radius, Vector3d(0.1, 0.2, 0));
         }
       }
@@ -187,6 +189,34 @@ void check_all_stay() {
 }
 
 }  // namespace
+
+TEST_CASE("Crates that are meshes of one outline bounce on each other, and do not turn", "[world]") {
+  using World = TurningWorld<2>;
+  for (const double restitution : {1.0, 0.5}) {
+    Log<RigidMotion<2>> log;
+    World world({.response = Response::elastic}, &log);
+    const Shape crate = MeshShape{std::make_shared<const Mesh>(mesh_of_box(0.5))};
+    world.add_body({.shape = crate, .motion = {standing<RigidMotion<2>>({0.1, 0.2, 0})}, .fixed = true});
+    std::vector<BodyId> bodies;
+    for (const double height : {1.25, 2.5, 3.75}) {
+      const auto motion = falling<RigidMotion<2>>({0.1, 0.2, height}, 0);
+      bodies.push_back(world.add_body({.shape = crate, .motion = {motion}, .restitution = restitution}));
+    }
+    world.advance_to(2);
+    CAPTURE(restitution);
+    CHECK(log.let_through == 0);
+    CHECK(log.contacts > 6);
+    double below = 0;
+    for (const BodyId body : bodies) {
+      const RigidMotion<2>& motion = world.motion(body);
+      const Vector3d place = path_of(motion).position(2);
+      CHECK(place[2] > below + 1 - 1e-3);
+      CHECK((place - Vector3d(0.1, 0.2, place[2])).norm() < 1e-9);
+      CHECK(motion.angular_velocity.norm() < 1e-9);
+      below = place[2];
+    }
+  }
+}
 
 TEST_CASE("Bodies placed on a floor stay on it", "[world]") { check_all_stay<PointMotion<2>>(); }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "certificates/turning/edge_edge_separation.hpp"
+#include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
+#include "kds/turning/turning_certificate.hpp"
 #include "kds/turning/turning_failure_time.hpp"
 
 #include <Eigen/Core>
@@ -20,21 +22,30 @@ namespace kds::collision {
 /// touch.
 ///
 /// Law: answers are those of kds::sign_after, failure_time and recovery_time. These tell for all doubles of a stretch
-/// which sign a certificate has just after them. All certificates are of the same two motions, which must stay at their
+/// which sign a certificate has just after them. One that is zero just after a time is zero at all times, which costs
+/// the most to tell, and is remembered apart. All certificates are of the same two motions, which must stay at their
 /// addresses.
 class RememberedSigns {
  public:
   template <class C>
   int sign_after(const C& certificate, double t) {
     if constexpr (!is_shared<C>()) {
-      return kds::sign_after(certificate, t);
+      return new_sign(certificate, t);
     } else {
       const Key key = key_of(certificate);
       if (const Stretch* const known = find(key, t)) return known->sign;
-      const int sign = kds::sign_after(certificate, t);
-      remember({key, t, t, sign, false});
+      const int sign = new_sign(certificate, t);
+      if (sign != 0) remember({key, t, t, sign, false});
       return sign;
     }
+  }
+
+  template <class C>
+  bool vanishes(const C& certificate) {
+    if (is_known_zero(certificate)) return true;
+    if (!kds::vanishes(certificate)) return false;
+    remember_zero(certificate);
+    return true;
   }
 
   template <class C>
@@ -47,14 +58,18 @@ class RememberedSigns {
   }
 
  private:
-  enum class Kind : unsigned char { vertex_and_face, two_edges };
+  enum class Kind : unsigned char { vertex_and_face, two_edges, normal_and_edge };
   /// What a certificate is made of, apart from the two motions of the pair.
-  struct Key {
+  template <std::size_t Points>
+  struct KeyOf {
     Kind kind;  ///< two bodies may have points of the same coordinates
     const void* first_motion;
-    std::array<double, 12> coordinates;
-    friend bool operator==(const Key&, const Key&) = default;
+    std::array<double, 3 * Points> coordinates;
+    friend bool operator==(const KeyOf&, const KeyOf&) = default;
   };
+  using Key = KeyOf<4>;
+  /// Of a certificate that is zero, in whatever order its points are named.
+  using ZeroKey = KeyOf<5>;
   /// Of a certificate from one time to another.
   struct Stretch {
     Key key;
@@ -64,7 +79,8 @@ class RememberedSigns {
     bool holds(double t) const { return from <= t && (changes ? t < to : t <= to); }
   };
 
-  static void put(Key& key, std::size_t place, const Eigen::Vector3d& x) {
+  template <std::size_t Points>
+  static void put(KeyOf<Points>& key, std::size_t place, const Eigen::Vector3d& x) {
     for (std::size_t d = 0; d < 3; ++d) key.coordinates[3 * place + d] = x[static_cast<Eigen::Index>(d)];
   }
   template <int Degree>
@@ -87,6 +103,58 @@ class RememberedSigns {
     return key;
   }
 
+  /// Points in the order of their coordinates.
+  template <std::size_t Points>
+  static void put_sorted(ZeroKey& key, std::size_t place, std::array<Eigen::Vector3d, Points> points) {
+    std::sort(points.begin(), points.end(), [](const Eigen::Vector3d& x, const Eigen::Vector3d& y) {
+      return std::lexicographical_compare(x.data(), x.data() + 3, y.data(), y.data() + 3);
+    });
+    for (const Eigen::Vector3d& x : points) put(key, place++, x);
+  }
+  template <int Degree>
+  static ZeroKey zero_key_of(const certificates::VertexFaceSeparation<Degree>& c) {
+    ZeroKey key{Kind::vertex_and_face, &c.a, {}};
+    put(key, 0, c.vertex);
+    put_sorted(key, 1, c.corners);
+    return key;
+  }
+  template <int Degree>
+  static ZeroKey zero_key_of(const certificates::EdgeEdgeSeparation<Degree>& c) {
+    ZeroKey key{Kind::two_edges, &c.a, {}};
+    put_sorted(key, 0, c.edge_a);
+    put_sorted(key, 2, c.edge_b);
+    return key;
+  }
+  template <int Degree>
+  static ZeroKey zero_key_of(const certificates::NormalAlongEdge<Degree>& c) {
+    ZeroKey key{Kind::normal_and_edge, &c.a, {}};
+    put_sorted(key, 0, c.corners);
+    put_sorted(key, 3, c.edge);
+    return key;
+  }
+  template <class C>
+  static constexpr bool zeros_are_kept() {
+    return requires(const C& certificate) { zero_key_of(certificate); };
+  }
+  template <class C>
+  bool is_known_zero(const C& certificate) const {
+    if constexpr (zeros_are_kept<C>()) {
+      return !zeros_.empty() && std::find(zeros_.begin(), zeros_.end(), zero_key_of(certificate)) != zeros_.end();
+    }
+    return false;
+  }
+  template <class C>
+  void remember_zero(const C& certificate) {
+    if constexpr (zeros_are_kept<C>()) {
+      constexpr std::size_t most = 256;
+      if (zeros_.size() < most) {
+        zeros_.push_back(zero_key_of(certificate));
+      } else {
+        zeros_[oldest_zero_++ % most] = zero_key_of(certificate);
+      }
+    }
+  }
+
   template <class C>
   static constexpr bool is_shared() {
     return requires(const C& certificate) { key_of(certificate); };
@@ -97,6 +165,15 @@ class RememberedSigns {
       if (known.holds(t) && known.key == key) return &known;
     }
     return nullptr;
+  }
+
+  /// Of what is not remembered, unless it is zero.
+  template <class C>
+  int new_sign(const C& certificate, double t) {
+    if (is_known_zero(certificate)) return 0;
+    const int sign = kds::sign_after(certificate, t);
+    if (sign == 0) remember_zero(certificate);
+    return sign;
   }
 
   void remember(const Stretch& stretch) {
@@ -131,6 +208,8 @@ class RememberedSigns {
 
   std::vector<Stretch> known_;
   std::size_t oldest_ = 0;
+  std::vector<ZeroKey> zeros_;
+  std::size_t oldest_zero_ = 0;
 };
 
 }  // namespace kds::collision

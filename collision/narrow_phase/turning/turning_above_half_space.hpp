@@ -41,7 +41,10 @@ class TurningAboveHalfSpace {
       : plane_(plane), a_{a}, corners_(std::move(corners)), b_(b) {}
 
   static bool known_to_separate_nothing(int) { return false; }
-  static bool separates_nothing(int) { return false; }
+  template <class Vanishes>
+  static bool separates_nothing(int, const Vanishes&) {
+    return false;
+  }
 
   /// The pair as it is at a time, in doubles: products of vectors of the body with the normal, as they are turned.
   struct Frame : PairFrame<Degree> {

@@ -111,7 +111,10 @@ class TurningBallAndBox {
     return square > 0 ? std::max(0.0, radius_ - std::sqrt(square)) : never;
   }
 
-  static bool separates_nothing(int) { return false; }
+  template <class Vanishes>
+  static bool separates_nothing(int, const Vanishes&) {
+    return false;
+  }
 
   /// The same pair with a smaller ball; none where nothing of it is left.
   std::optional<TurningBallAndBox> smaller(double margin) const {

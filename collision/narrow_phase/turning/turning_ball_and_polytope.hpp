@@ -56,7 +56,10 @@ class TurningBallAndPolytope {
   static constexpr Conditions all(int) { return ~Conditions{0}; }
   Conditions unsure(const Frame&, int way, double) const { return all(way); }
   static bool known_to_separate_nothing(int) { return false; }
-  static bool separates_nothing(int) { return false; }
+  template <class Vanishes>
+  static bool separates_nothing(int, const Vanishes&) {
+    return false;
+  }
 
   template <class Test>
   bool every_condition(int way, Conditions, const Test& test) const;

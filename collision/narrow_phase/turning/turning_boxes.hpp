@@ -120,7 +120,8 @@ class TurningBoxes {
   /// Whether all conditions of a way are zero at all times: that is whether the edges it crosses, u and v, are
   /// parallel. Three tell. If (u x v) . (a - b) vanishes for one edge of b and three edges of a, u x v is at right
   /// angles to two other edges of a, and it is to u.
-  bool separates_nothing(int way) const {
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes& vanishes) const {
     if (way < 12) return false;
     const int pair = (way - 12) / 2;
     const auto v = edge(box_b_.exact, pair % 3, 0, false);

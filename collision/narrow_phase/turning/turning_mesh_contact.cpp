@@ -1,6 +1,6 @@
 #include "collision/narrow_phase/turning/turning_mesh_contact.hpp"
 
-#include "collision/narrow_phase/turning/turning_mesh_search.hpp"
+#include "collision/narrow_phase/turning/turning_mesh_front.hpp"
 #include "collision/shapes/polytope.hpp"
 
 #include <stdexcept>

@@ -11,8 +11,11 @@ namespace kds::collision {
 /// Law. A mesh is its surface, a set of triangles; a ball, a box or a capsule is solid. Contact is the first double
 /// just after which a triangle of a penetrates b, or a triangle of b, by exact signs (see TurningTriangles,
 /// TurningTriangleAndBox, TurningTriangleAndBall, TurningTriangleAndCapsule for what penetrates). What touches, or
-/// slides in one plane, is not in contact. Two surfaces that go through each other face on face, with outlines that
-/// agree exactly, only touch, at all times.
+/// slides in one plane, is not in contact.
+///
+/// Two closed meshes penetrate, too, if the surface of each enters the solid that the other bounds at an edge that lies
+/// in the plane of a triangle at all times (FlushEntry), as crates of one outline that fall on each other: of these no
+/// two triangles do more than touch. Surfaces that are not closed do not penetrate then.
 ///
 /// What is exact of a mesh are its vertices times its scale, each coordinate rounded to a double (scaled_vertex), as
 /// points of the body, turned by the exact rotation of its motion. All parts use these numbers.

@@ -2,15 +2,20 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/flush_edges.hpp"
 #include "collision/narrow_phase/turning/node_pairs.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
 #include "collision/narrow_phase/turning/turning_touch.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <type_traits>
 #include <utility>
@@ -37,19 +42,33 @@ class TurningMeshSearch {
         units_a_(a.units()),
         units_b_(b.units()) {}
 
-  double first_contact(double t0, double horizon, ContactMode mode) const;
-
-  bool in_contact(double t) const {
-    return find(view(t), [](NodePair, const Pair&) { return true; });
+  double first_contact(double t0, double horizon, ContactMode mode) const {
+    return Front(*this, t0, horizon, mode).next();
   }
 
-  /// The pair of triangles that penetrates just after t is followed until it parts, then the next one.
+  bool in_contact(double t) const {
+    const View view = this->view(t);
+    Entered entered;
+    return every_near(view, 0, [&](NodePair leaves, const Pair& pair) {
+      return ways(pair, view).penetrate(t) || now_entered(leaves, pair, view, entered);
+    });
+  }
+
+  /// The pair of triangles that penetrates just after t, or the two that enter, are followed until they part, then the
+  /// next ones.
   double first_separation(double t0, double horizon) const {
     for (double t = t0; t <= horizon;) {
       double parts = t;
       const View view = this->view(t);
-      const bool penetrate = find(view, [&](NodePair, const Pair& pair) {
-        parts = ways(pair, view).first_parting(t, horizon);
+      Entered entered;
+      const bool penetrate = every_near(view, 0, [&](NodePair leaves, const Pair& pair) {
+        if (ways(pair, view).penetrate(t)) {
+          parts = ways(pair, view).first_parting(t, horizon, true);
+          return true;
+        }
+        if (!now_entered(leaves, pair, view, entered)) return false;
+        parts = never;
+        for (const auto& entry : entered.into) parts = std::min(parts, ways(*entry).first_parting(t, horizon, true));
         return true;
       });
       if (!penetrate) return t;
@@ -67,14 +86,15 @@ class TurningMeshSearch {
   enum class Known : std::uint8_t {
     apart_until,  ///< by floats or doubles
     stuck,        ///< doubles do not tell more: exact signs have to
-    contact       ///< they penetrate just after that time
+    contact,      ///< they penetrate just after that time
+    entered       ///< the two solids enter each other at flush edges
   };
   struct Item {
     double time;
     double seen;  ///< the time of the view that has told so
     NodePair nodes;
     Known known;
-    int tries = 0;  ///< by exact signs, one after the other
+    int tries = 0;  ///< by exact signs, or at what has entered, one after the other
     /// Which one of the same time is first makes no difference.
     friend bool operator>(const Item& x, const Item& y) { return x.time > y.time; }
   };
@@ -115,7 +135,9 @@ class TurningMeshSearch {
     void visit_triangles(const Visit& visit);
     void visit_triangles_together();
     void visit_exactly(NodePair nodes, int tries);
+    void note_entries(NodePair nodes, const Pair& pair, double until);
     bool counts(NodePair nodes) const;
+    bool entered_counts(const Item& item);
 
     const TurningMeshSearch& search_;
     double horizon_;  ///< in mode `transparent` no later than a contact that is known
@@ -123,6 +145,8 @@ class TurningMeshSearch {
     View view_;  ///< at the time that is looked at, or not long before
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
     std::vector<Visit> visits_, leaves_;  ///< of visit_all()
+    FlushEntries entries_;
+    double last_entered_ = -never;  ///< when it was last looked at what has entered
   };
 
   View view(double t, double horizon) const { return {motion_a_, motion_b_, rates_, units_a_, units_b_, t, horizon}; }
@@ -138,6 +162,47 @@ class TurningMeshSearch {
       return Ways(pair, signs_);
     }
   }
+  using Entry = FlushEntry<Degree>;
+  using EntryWays = WaysApart<Entry, RememberedSigns&>;
+  EntryWays ways(const Entry& entry) const { return EntryWays(entry, signs_); }
+
+  /// Calls visit(place, entry) for the places of two triangles of closed meshes at which one may enter the solid of the
+  /// other.
+  template <class Visit>
+  void every_entry(NodePair leaves, const Pair& pair, const View& view, const Visit& visit) const {
+    if constexpr (tells_triangles) {
+      const auto [near_a, near_b] = pair.near_planes(view);
+      if (std::popcount(near_a) < 2 && std::popcount(near_b) < 2) return;
+      if (!a_.is_closed() || !b_.is_closed()) return;
+      const typename Entry::Side a{motion_a_, a_.corners(leaves.a)}, b{motion_b_, b_.corners(leaves.b)};
+      every_flush_entry<Degree>(
+          a, near_b, b, near_a, view.time, signs_, [&](std::size_t i) { return b_.corner_across(leaves.b, i); },
+          [&](bool of_face, int number, const Entry& entry) {
+            visit({leaves, of_face ? Into::a : Into::b, number}, entry);
+          });
+      every_flush_entry<Degree>(
+          b, near_a, a, near_b, view.time, signs_, [&](std::size_t i) { return a_.corner_across(leaves.a, i); },
+          [&](bool of_face, int number, const Entry& entry) {
+            visit({leaves, of_face ? Into::b : Into::a, number}, entry);
+          });
+    }
+  }
+
+  /// Where surfaces enter the one and the other solid just after some time.
+  struct Entered {
+    std::array<std::optional<Entry>, 2> into;
+    bool both() const { return into[0] && into[1]; }
+  };
+  /// Whether they do with those of this pair.
+  bool now_entered(NodePair leaves, const Pair& pair, const View& view, Entered& entered) const {
+    if (entered.both()) return true;
+    every_entry(leaves, pair, view, [&](const FlushEntries::Place& place, const Entry& entry) {
+      auto& known = entered.into[place.into == Into::a ? 0 : 1];
+      if (!known && ways(entry).penetrate(view.time)) known.emplace(entry);
+    });
+    return entered.both();
+  }
+
   /// Calls ask(leaves, pair) for the pairs that are not surely farther apart than twice a margin, until it returns
   /// true.
   template <class Ask>
@@ -175,7 +240,12 @@ class TurningMeshSearch {
     const PointRates<Degree> rates(motion_a_, motion_b_, view.time);
     return touch_of(pair, a_, leaves.a, b_, leaves.b, view, rates, motion_a_.path.position(view.time));
   }
+  std::optional<TurningTouch> entered_touch(const View& view, const View& then) const;
   double passed_over(const Pair& pair, const View& view, double horizon) const;
+  /// In so short a time they do not get deeper by more than 2^-40 of their distances, if they do not approach.
+  double short_time(const View& view, double horizon) const {
+    return 0x1p-20 * view.stretch(a_.radius(0) + norm(view.way.value), horizon - view.time);
+  }
 
   const MeshOfPair& a_;
   const Side& b_;
@@ -189,155 +259,13 @@ class TurningMeshSearch {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
-template <int Degree, class Side>
-double TurningMeshSearch<Degree, Side>::first_contact(double t0, double horizon, ContactMode mode) const {
-  return Front(*this, t0, horizon, mode).next();
-}
-
-/// A view costs as much as some pairs of nodes, so each is used for a part of the time for which the last one could be
-/// used.
-template <int Degree, class Side>
-double TurningMeshSearch<Degree, Side>::Front::next() {
-  constexpr double part = 0.375;
-  constexpr std::size_t most_visits = 16;
-  const auto soon_enough = [&](const Item& item) { return item.time - view_.time <= part * (item.time - item.seen); };
-  while (!queue_.empty()) {
-    const Item item = queue_.top();
-    queue_.pop();
-    switch (item.known) {
-      case Known::apart_until:
-        if (item.time > horizon_) return never;
-        if (!soon_enough(item)) look(item.time);
-        visits_.push_back({item.nodes, item.time, item.tries});
-        // Others that this view is good for, too, so that some are looked at together.
-        while (!queue_.empty() && visits_.size() < most_visits) {
-          const Item& other = queue_.top();
-          if (other.known != Known::apart_until || other.time > horizon_ || !soon_enough(other)) break;
-          visits_.push_back({other.nodes, other.time, other.tries});
-          queue_.pop();
-        }
-        visit_all();
-        break;
-      case Known::stuck:
-        look(item.time);
-        visit_exactly(item.nodes, item.tries);
-        break;
-      case Known::contact:
-        look(item.time);
-        if (mode_ == ContactMode::transparent || counts(item.nodes)) return item.time;
-        push(search_.passed_over(search_.pair(item.nodes), view_, horizon_), item.nodes, Known::apart_until);
-    }
-  }
-  return never;
-}
-
-/// By floats, and triangles by doubles.
-template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_all() {
-  while (!visits_.empty()) {
-    const auto together = search_.nodes_.take_together(visits_, &Visit::nodes);
-    const NodeWaits apart = nodes_apart(view_, together.nodes);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(together.nodes.count); ++i) {
-      const Visit& visit = together.items[i];
-      const double until = apart_until(apart.part[i]);
-      if (until > horizon_) continue;
-      if ((apart.worth_it >> i & 1) && until > visit.from) {
-        push(until, visit.nodes, Known::apart_until);
-      } else if (search_.nodes_.are_leaves(visit.nodes)) {
-        leaves_.push_back(visit);
-      } else {
-        search_.nodes_.open(visit.nodes, [&](NodePair halves) { visits_.push_back({halves, visit.from}); });
-      }
-    }
-  }
-  if constexpr (tells_triangles) visit_triangles_together();
-  for (const Visit& visit : leaves_) visit_triangles(visit);
-  leaves_.clear();
-}
-
-/// By floats. Those that need more are left in the list.
-template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_triangles_together() {
-  constexpr float worth = 0x1p-8F;
-  if (!view_.certain || !(view_.ahead > 0)) return;
-  constexpr std::size_t width = most_together;
-  TrianglesTogether triangles{};
-  std::size_t left = 0;
-  for (std::size_t first = 0; first < leaves_.size(); first += width) {
-    const std::size_t count = std::min(width, leaves_.size() - first);
-    triangles.count = static_cast<int>(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      const NodePair& leaves = leaves_[first + i].nodes;
-      const auto a = search_.a_.corners(leaves.a), b = search_.b_.corners(leaves.b);
-      for (std::size_t k = 0; k < 3; ++k) {
-        put_corner(triangles.a[k][i], view_, a[k]);
-        put_corner(triangles.b[k][i], view_, b[k]);
-      }
-    }
-    std::array<float, width> parts;
-    find_triangle_parts(view_.floats, triangles, parts.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const Visit visit = leaves_[first + i];
-      const double until = apart_until(parts[i]);
-      if (until > horizon_) continue;
-      if (parts[i] >= worth && until > visit.from) {
-        push(until, visit.nodes, Known::apart_until);
-      } else {
-        leaves_[left++] = visit;
-      }
-    }
-  }
-  leaves_.resize(left);
-}
-
-/// By doubles. Where they tell nothing new it is looked at again in a view of its own time: the view is never later
-/// than what waits in the queue.
-template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
-  const double until = search_.pair(visit.nodes).apart_until(view_, horizon_);
-  if (until > visit.from) {
-    push(until, visit.nodes, Known::apart_until);
-  } else {
-    push(visit.from, visit.nodes, view_.time < visit.from ? Known::apart_until : Known::stuck, visit.tries);
-  }
-}
-
-/// By exact signs: for a while, or up to the time at which other pairs may come first. For surfaces that slide on each
-/// other nothing else decides, so the while grows from try to try.
-template <int Degree, class Side>
-void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int tries) {
-  constexpr double part_of_turn = 0x1p-6;
-  constexpr int most_tries = 20;
-  const double t = view_.time;
-  const Pair pair = search_.pair(nodes);
-  const double others = queue_.empty() ? never : queue_.top().time;
-  const double step = std::max(next_up(t), t + std::ldexp(part_of_turn, 2 * tries) * pair.time_of_turning());
-  const double until = std::min(horizon_, std::max(others, step));
-  const double contact = search_.ways(pair, view_).first_penetration(t, until, true);
-  if (contact != never) {
-    push(contact, nodes, Known::contact);
-    if (mode_ == ContactMode::transparent) horizon_ = contact;
-    return;
-  }
-  if (until < horizon_) push(until, nodes, Known::apart_until, std::min(tries + 1, most_tries));
-}
-
-template <int Degree, class Side>
-bool TurningMeshSearch<Degree, Side>::Front::counts(NodePair nodes) const {
-  return search_.touch(nodes, search_.pair(nodes), view_).approach > 0;
-}
-
 /// When a pair that penetrates and does not approach is to be looked at again: just after it has parted, or when it is
 /// deeper by more than roundings of coordinates.
 template <int Degree, class Side>
 double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
   const double t = view.time;
   const auto ways = this->ways(pair, view);
-  // In so short a time they do not get deeper by more than 2^-40 of their distances, as they do not approach. Mostly
-  // they have parted by then.
-  constexpr double short_time = 0x1p-20;
-  const double sizes = a_.radius(0) + norm(view.way.value);
-  const double soon = std::max(next_up(t), t + short_time * view.stretch(sizes, horizon - t));
+  const double soon = std::max(next_up(t), t + short_time(view, horizon));  // mostly they have parted by then
   if (const double parts = ways.first_parting(t, std::min(soon, horizon), true); parts != never) return parts;
   const double depth = std::max(0.0, -pair.gap(view));
   const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
@@ -353,6 +281,45 @@ double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View
   return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon), true));
 }
 
+/// Where solids touch that enter each other at flush edges just after the time of `then`, seen at that of the view: in
+/// the middle of the places that approach as fast as the fastest one, along the same direction. None if they do not
+/// enter each other, or are deeper in each other than by what they may come to be while they are passed over.
+template <int Degree, class Side>
+auto TurningMeshSearch<Degree, Side>::entered_touch(const View& view, const View& then) const
+    -> std::optional<TurningTouch> {
+  std::vector<std::pair<NodePair, TurningTouch>> touches;
+  std::array<bool, 2> into{};
+  if constexpr (tells_triangles) {
+    const double deepest = 0x1p-20 * (a_.radius(0) + norm(view.way.value));
+    const PointRates<Degree> rates(motion_a_, motion_b_, view.time);
+    const Eigen::Vector3d origin = motion_a_.path.position(view.time);
+    every_near(then, 0, [&](NodePair leaves, const Pair& pair) {
+      every_entry(leaves, pair, then, [&](const FlushEntries::Place& place, const Entry& entry) {
+        if (!ways(entry).penetrate(then.time)) return;
+        into[place.into == Into::a ? 0 : 1] = true;
+        const bool face_of_a = &entry.of_face() == &motion_a_;
+        const Eigen::Vector3d flush = face_of_a ? view.in_world_a(entry.normal()) : view.in_world_b(entry.normal());
+        touches.emplace_back(leaves, touch_of(pair, a_, leaves.a, b_, leaves.b, view, rates, origin, flush, deepest));
+      });
+      return false;
+    });
+  }
+  if (!into[0] || !into[1]) return std::nullopt;
+  std::stable_sort(touches.begin(), touches.end(), [](const auto& x, const auto& y) {
+    return x.second.approach > y.second.approach || (x.second.approach == y.second.approach && x.first < y.first);
+  });
+  TurningTouch best = touches[0].second;
+  if (best.approach == -never) return std::nullopt;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  int count = 0;
+  for (const auto& [leaves, touch] : touches) {
+    if (touch.approach < best.approach - 0x1p-20 * std::abs(best.approach)) break;
+    if (dot(touch.normal, best.normal) > 1 - 0x1p-20) sum += touch.point, ++count;
+  }
+  best.point = sum / count;
+  return best;
+}
+
 template <int Degree, class Side>
 TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   TurningTouch best;
@@ -360,7 +327,8 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   const View view = this->view(t);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
-    find(this->view(when), [&](NodePair leaves, const Pair& pair) {
+    const View then = this->view(when);
+    find(then, [&](NodePair leaves, const Pair& pair) {
       const TurningTouch each = touch(leaves, pair, view);
       if (!any || each.approach > best.approach || (each.approach == best.approach && leaves < of_best)) {
         best = each, of_best = leaves;
@@ -368,6 +336,11 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
       any = true;
       return false;
     });
+    if (!any || !(best.approach > 0)) {
+      if (const auto entered = entered_touch(view, then); entered && (!any || entered->approach > best.approach)) {
+        return *entered;
+      }
+    }
     if (any) return best;
   }
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {

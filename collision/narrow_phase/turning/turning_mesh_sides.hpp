@@ -8,12 +8,17 @@
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/solid_integrals.hpp"
 
 #include <Eigen/Core>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <stdexcept>
 #include <variant>
 
 namespace kds::collision {
@@ -41,6 +46,12 @@ class MeshOfPair {
     return {unit_, 0, unit_ * reach * (1 + 0x1p-40)};
   }
   bool solid() const { return solid_; }
+  /// Whether it bounds a volume: its triangles turn alike, and along each edge as many to and fro. Takes O(n log n) of
+  /// a mesh that has not been asked yet.
+  bool is_closed() const {
+    if (!closed_) closed_ = solid_ || bounds_volume(*shape_.mesh);
+    return *closed_;
+  }
   bool is_leaf(std::uint32_t i) const { return nodes_[i].is_leaf(); }
   std::uint32_t first_child(std::uint32_t i) const { return nodes_[i].first; }
   double radius(std::uint32_t i) const { return unit_ * static_cast<double>(nodes_[i].radius); }
@@ -54,6 +65,24 @@ class MeshOfPair {
     return {scaled_vertex(shape_, vertices[0]), scaled_vertex(shape_, vertices[1]), scaled_vertex(shape_, vertices[2])};
   }
 
+  /// The third corner of the other triangle along edge i of a triangle, between its corners i and i + 1, of a mesh that
+  /// is closed; none if more than two triangles meet there. O(n).
+  std::optional<Eigen::Vector3d> corner_across(std::uint32_t leaf, std::size_t i) const {
+    const auto& vertices = shape_.mesh->vertices();
+    const auto& of_leaf = triangle(leaf).vertices;
+    const Eigen::Vector3d &from = vertices[of_leaf[i]], &to = vertices[of_leaf[(i + 1) % 3]];
+    std::optional<std::uint32_t> across;
+    for (const Mesh::Triangle& other : shape_.mesh->triangles()) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (vertices[other[k]] != to || vertices[other[(k + 1) % 3]] != from) continue;
+        if (across) return std::nullopt;
+        across = other[(k + 2) % 3];
+      }
+    }
+    if (!across) return std::nullopt;
+    return scaled_vertex(shape_, *across);
+  }
+
   template <int Degree>
   using PairWith = TurningTriangles<Degree>;
   /// A triangle of another mesh with one of this.
@@ -64,8 +93,18 @@ class MeshOfPair {
   }
 
  private:
+  static bool bounds_volume(const Mesh& mesh) {
+    try {
+      const SolidIntegrals& solid = mesh.solid();
+      return std::abs(static_cast<double>(solid.volume)) > 2 * solid.error(mesh.triangles().size());
+    } catch (const std::invalid_argument&) {
+      return false;
+    }
+  }
+
   const MeshShape& shape_;
   bool solid_;
+  mutable std::optional<bool> closed_;
   std::span<const ObbNode> nodes_;
   double unit_;
 };

@@ -99,9 +99,10 @@ class TurningPolytopes {
 
   bool known_to_separate_nothing(int way) const;
   /// Whether all conditions of a way are zero at all times.
-  bool separates_nothing(int way) const {
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes& vanishes) const {
     if (way < faces()) return false;
-    return every_condition(way, all(way), [](const auto& condition) { return vanishes(condition); });
+    return every_condition(way, all(way), vanishes);
   }
 
   /// The same pair with the first one smaller: each face is farther inside by `margin` at least. None where nothing of

@@ -72,9 +72,10 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
     return way < first_corner_and_edge_ && Base::known_to_separate_nothing(way);
   }
   /// Only edges that are parallel can.
-  bool separates_nothing(int way) const {
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes& vanishes) const {
     if (way < this->faces() || way >= first_corner_and_edge_) return false;
-    return every_condition(way, this->all(way), [](const auto& condition) { return vanishes(condition); });
+    return every_condition(way, this->all(way), vanishes);
   }
 
   /// The same pair with a smaller radius; none where nothing of it would be left.

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -118,10 +119,14 @@ Eigen::Vector3d outward(const Side& side, const Points& points) {
 ///
 /// They approach if they do so along all directions in which they are no deeper than roundings. A body that slides on a
 /// face, and is in it by a rounding, meets the walls below that face from inside: these must not stop it.
+///
+/// `flush`: a normal of the plane in which an edge of theirs is flush with a face, or zero. Along it they touch at all
+/// times, so that it does not count. `deepest`: if they are deeper in each other the approach is -never.
 template <int Degree, class HullB, class Side>
 TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair& a, std::uint32_t leaf_a, const Side& b,
                       std::uint32_t leaf_b, const TurningView<Degree>& view, const PointRates<Degree>& rates,
-                      const Eigen::Vector3d& origin) {
+                      const Eigen::Vector3d& origin, const Eigen::Vector3d& flush = Eigen::Vector3d::Zero(),
+                      double deepest = never) {
   using Hulls = TurningHulls<Degree, HullB>;
   const typename Hulls::Seen seen(pair, view);
   const auto along = [&](const Eigen::Vector3d& normal) {
@@ -138,10 +143,14 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair&
   };
   const Eigen::Vector3d out_of_b = detail::outward(b, seen.b);
   // Directions up to a thousandth of a radian from the normal. At an edge others, too, lead out of one of its faces.
-  const double along_normal = (1 - 0x1p-20) * norm(out_of_b);
-  const auto counts = [&](const typename Hulls::Widest& way) { return !(dot(way.normal, out_of_b) > along_normal); };
+  constexpr double cosine = 1 - 0x1p-20;
+  const double along_normal = cosine * norm(out_of_b), along_flush = cosine * norm(flush);
+  const auto counts = [&](const typename Hulls::Widest& way) {
+    return !(dot(way.normal, out_of_b) > along_normal) && !(std::abs(dot(way.normal, flush)) > along_flush);
+  };
   const auto widest = pair.widest(seen, counts);
   TurningTouch touch = along(widest.normal);
+  if (widest.gap < -deepest) touch.approach = -never;
   const double roundings = pair.roundings(view);
   pair.every_gap(seen, [&](const typename Hulls::Widest& way) {
     if (way.gap < -roundings || way.way == widest.way || !(touch.approach > 0) || !counts(way)) return;

@@ -35,7 +35,10 @@ class TurningTriangleAndBall {
   static constexpr Conditions all(int) { return ~Conditions{0}; }
   Conditions unsure(const TurningView<Degree>&, int way, double) const { return all(way); }
   static bool known_to_separate_nothing(int) { return false; }
-  static bool separates_nothing(int) { return false; }
+  template <class Vanishes>
+  static bool separates_nothing(int, const Vanishes&) {
+    return false;
+  }
 
   TurningView<Degree> frame(double t) const { return {a_, b_, t}; }
   double fastest(const TurningView<Degree>& view, double stretch) const {

@@ -53,8 +53,9 @@ class TurningTriangleAndBox : public TurningHulls<Degree, BoxHull> {
   }
 
   /// Whether all of its conditions are zero at all times.
-  bool separates_nothing(int way) const {
-    return way >= 8 && every_condition(way, Base::all(way), [](const auto& condition) { return vanishes(condition); });
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes& vanishes) const {
+    return way >= 8 && every_condition(way, Base::all(way), vanishes);
   }
 
   /// The first double in [t, until] just after which a corner is deeper than the slack in the plane of a way < 8, or

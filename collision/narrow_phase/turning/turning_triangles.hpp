@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -103,9 +104,33 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return unsure<Time::while_open>(view, way, stretch);
   }
 
+  /// Bits of the corners of b that may be in the plane of a at the time of the view, and of those of a in that of b.
+  std::array<unsigned, 2> near_planes(const TurningView<Degree>& view) const {
+    const auto &a = this->hull_a_, &b = this->hull_b_;
+    const double error = this->error(view);
+    const Eigen::Vector3d in_a = view.in_world_a(a.normals[0]), in_b = view.in_world_b(b.normals[0]);
+    // Each normal and its plane are seen from the other body: then its corners need not be turned.
+    const auto turned_back = [](const Eigen::Matrix3d& m, const Eigen::Vector3d& x) {
+      return Eigen::Vector3d(m(0, 0) * x[0] + m(1, 0) * x[1] + m(2, 0) * x[2],
+                             m(0, 1) * x[0] + m(1, 1) * x[1] + m(2, 1) * x[2],
+                             m(0, 2) * x[0] + m(1, 2) * x[1] + m(2, 2) * x[2]);
+    };
+    const Eigen::Vector3d seen_from_b = turned_back(view.matrix_b, in_a);
+    const Eigen::Vector3d seen_from_a = turned_back(view.matrix_a, in_b);
+    const double plane_a = dot(a.normals[0], a.points[0]) - dot(in_a, view.way.value);
+    const double plane_b = dot(b.normals[0], b.points[0]) + dot(in_b, view.way.value);
+    std::array<unsigned, 2> near{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(std::abs(dot(seen_from_b, b.points[i]) - plane_a) > error)) near[0] |= 1u << i;
+      if (!(std::abs(dot(seen_from_a, a.points[i]) - plane_b) > error)) near[1] |= 1u << i;
+    }
+    return near;
+  }
+
   /// Whether all of its conditions are zero at all times.
-  bool separates_nothing(int way) const {
-    return way >= 4 && every_condition(way, Base::all(way), [](const auto& condition) { return vanishes(condition); });
+  template <class Vanishes>
+  bool separates_nothing(int way, const Vanishes& vanishes) const {
+    return way >= 4 && every_condition(way, Base::all(way), vanishes);
   }
 
   /// The first double in [t, until] just after which a corner is deeper than the slack in the plane of a way < 4, or

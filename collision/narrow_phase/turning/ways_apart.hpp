@@ -30,21 +30,26 @@ struct ExactSigns {
   int sign_after(const C& certificate, double t) const {
     return kds::sign_after(certificate, t);
   }
+  template <class C>
+  bool vanishes(const C& certificate) const {
+    return kds::vanishes(certificate);
+  }
 };
 
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
 ///
 /// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way,
-/// conditions, test)`; `separates_nothing(way)`, whether the way does not count: all of its conditions are zero at all
-/// times, and `known_to_separate_nothing(way)`, where that is told at once; `frame(t)`, what is known in doubles;
-/// `gaps(frame, gap)`, which fills in a width for each way and returns an error, so that a way that is narrower than
-/// -error has a condition that is broken then; `fastest(frame, stretch)`, a bound on how fast widths change;
-/// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps `unsure_while_open`, the same
-/// of a way whose conditions hold just after the time of the frame; perhaps `many_conditions`, if they are never all to
-/// be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame, way,
-/// stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the same
-/// of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
+/// conditions, test)`; `separates_nothing(way, vanishes)`, whether the way does not count: all of its conditions are
+/// zero at all times, as vanishes(certificate) tells, and `known_to_separate_nothing(way)`, where that is told at once;
+/// `frame(t)`, what is known in doubles; `gaps(frame, gap)`, which fills in a width for each way and returns an error,
+/// so that a way that is narrower than -error has a condition that is broken then; `fastest(frame, stretch)`, a bound
+/// on how fast widths change; `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
+/// `unsure_while_open`, the same of a way whose conditions hold just after the time of the frame; perhaps
+/// `many_conditions`, if they are never all to be looked at; `apart_until(t, horizon)`, a proven time;
+/// `time_of_turning()`; perhaps `open_wait(frame, way, stretch)`, for how long a way that is open just after the time
+/// of the frame stays so for certain, `waits`, the same of each of its conditions by its number, and `stretch(frame,
+/// longest)`, how far these can be told.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -52,7 +57,8 @@ struct ExactSigns {
 /// Method: a way that is open just after t stays so until the first of its conditions fails. Then another may be open,
 /// just after that time; if none is, they penetrate. Before that, as far as they get, proofs in doubles.
 ///
-/// `Signs` finds signs and when they change: kds::sign_after, failure_time and recovery_time, or what remembers them.
+/// `Signs` finds signs and when they change: kds::sign_after, failure_time, recovery_time and vanishes, or what
+/// remembers them.
 template <class Pair, class Signs = ExactSigns>
 class WaysApart {
  public:
@@ -280,7 +286,10 @@ class WaysApart {
   /// As the pair says, which is asked once: exact zeros cost most.
   bool separates_nothing(int way) const {
     signed char& known = nothing_[static_cast<std::size_t>(way)];
-    if (known < 0) known = pair_.separates_nothing(way) ? 1 : 0;
+    if (known < 0) {
+      const auto vanishes = [&](const auto& condition) { return signs_.vanishes(condition); };
+      known = pair_.separates_nothing(way, vanishes) ? 1 : 0;
+    }
     return known != 0;
   }
 
