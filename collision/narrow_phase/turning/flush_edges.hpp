@@ -75,6 +75,7 @@ class FlushEntry {
   // What WaysApart asks. Nothing of it is told in doubles: exact signs decide all.
   static constexpr int ways = 7;
   using Conditions = std::uint32_t;
+  /// What is known in doubles: the time alone.
   struct Frame {
     double time;
   };
