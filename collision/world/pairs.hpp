@@ -304,7 +304,13 @@ inline void Pairs<Motion>::motion_changed(BodySlot id, bool jumped) {
   if (!jumped) return;
   edits_.add_jump(id, clock_.now);
   for (const Link& link : links(id)) {
-    if (newly_allowed(id, link.other) || mode(id, link.other) == ContactMode::resolved) pairs_[link.slot].fresh = true;
+    const bool resolved = mode(id, link.other) == ContactMode::resolved;
+    if (!resolved && !newly_allowed(id, link.other)) continue;
+    Pair& pair = pairs_[link.slot];
+    pair.fresh = true;
+    if (!resolved || !pair.overlapping) continue;
+    // It overlapped before the jump: if that has not been reported yet, it counts only if it still does.
+    reports_.take_back(Reports::Kind::overlap, bodies_.id_of(pair.a), bodies_.id_of(pair.b));
   }
 }
 

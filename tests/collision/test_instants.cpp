@@ -196,6 +196,27 @@ TEST_CASE("Bodies are said to touch until their separation is told", "[instants]
   for (std::size_t i = 0; i < touching.size(); ++i) CHECK(touching[i] == (i % 4 == 1));
 }
 
+TEST_CASE("A jump in a callback takes back the overlaps that it ends before they are told", "[instants]") {
+  // 1 overlaps 0 and 2. When the first of these overlaps is told, 2 jumps: away, or to where it overlaps 1 less.
+  const double to = GENERATE(50.0, 3.25);
+  const Told expected = to == 50 ? Told{"overlap 0 1"} : Told{"overlap 0 1", "overlap 1 2"};
+  for (const auto& [kind, name, what] : broad_phases) {
+    WorldOptions options;
+    options.response = Response::elastic;
+    options.broad_phase = kind;
+    options.rate = 8;
+    EventLog<1> log;
+    log.then = [&](World<1>& world, const Event& e) {
+      if (e.b == 1) world.update_motion(2, motion<1>({to, 0, 0}, zero));
+    };
+    World<1> world(options, &log);
+    for (const double x : {0.0, 1.5, 3.0}) world.add_body(ball<1>(1, {x, 0, 0}));
+    world.advance_to(1);
+    INFO(name);
+    CHECK(told(log.events) == expected);
+  }
+}
+
 TEST_CASE("A script's jump and an end that passes another at one instant make one overlap", "[instants]") {
   // Ball 1 jumps up beside ball 2 as that comes to touch it from the side, up to roundings: in the sorted lists that is
   // due at the double of the jump, and comes after it.
