@@ -27,6 +27,10 @@ namespace kds {
 /// they are replayed, and must then do the same (replaying() is true then). Events and calls that are rolled back are
 /// forgotten: the run goes on from there. Simulator and parts are referred to, and must outlive it.
 ///
+/// With Simulator::set_window(), a step that finds no event looks ahead while the clock stays, so that several states
+/// of one clock differ in their horizon and in the failure times that are known up to it. roll_back() brings back one
+/// of these: next_time() may then see farther than it did, or less far. The events are the same.
+///
 /// Cost: memory, a snapshot every `every` events or calls, and a few words a call; a roll-back, a load and at most
 /// `every` events and calls. Not for time that runs backwards (reverse.hpp).
 template <class AnySimulator, class... Parts>
