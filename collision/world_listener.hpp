@@ -46,10 +46,12 @@ class BasicWorld;
 /// separations, by (a, b); then those of meshes that bend with themselves, by body.
 ///
 /// Every callback may change motions, add and remove bodies, the ones concerned included; the world is consistent when
-/// it is called, and later reports of the same instant are made of the world as it is then. To advance, save or load
-/// the world from within a callback throws std::logic_error. WorldOptions::most_edits limits the changes. What a
-/// callback throws comes out of the step, and the run may go on: the clock stands at the event, which has been
-/// processed; only the remaining reports of that event are lost.
+/// it is called, and later reports of the same instant are made of the world as it is then. (Of bodies that pass
+/// through each other, sensors and those in worlds without response, an overlap that has been found is reported though
+/// a jump in a callback has ended it; its separation follows at the same instant.) To advance, save or load the world
+/// from within a callback throws std::logic_error. WorldOptions::most_edits limits the changes. What a callback throws
+/// comes out of the step, and the run may go on: the clock stands at the event, which has been processed; only the
+/// remaining reports of that event are lost.
 template <class Motion>
 class BasicWorldListener {
  public:
