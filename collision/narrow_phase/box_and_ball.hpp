@@ -6,6 +6,7 @@
 #include "collision/degrees.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/quick_distance.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
 
 #include <Eigen/Core>
@@ -109,7 +110,7 @@ class BoxAndBall<Degree>::Piece {
   double closed_until(std::size_t i, double t) const;
   double opened_by(std::size_t i) const {
     const Quick& motion = pair_->motion_;
-    if (i == 6) return motion.time_after(distance_opened_by());
+    if (i == 6) return motion.time_after(quick_distance().opened_by());
     const std::size_t d = i / 2;
     return motion.time_after(motion.opened_by(pair_->along_[d], side(i), pair_->half_width(d, place_[d])));
   }
@@ -136,10 +137,15 @@ class BoxAndBall<Degree>::Piece {
 
   bool around(std::size_t d) const { return place_[d] == around_low || place_[d] == around_high; }
   bool possible() const { return window_.begin <= window_.end; }
-  bool cut(double until);
+  bool cut(double until) { return !curved_ || quick_distance().cut_until(window_, until); }
 
-  double distance_opened_by() const;
-
+  QuickDistance<Degree> quick_distance() const {
+    QuickDistance<Degree> result(pair_->motion_, pair_->radius_);
+    for (std::size_t d = 0; d < 3; ++d) {
+      if (around(d)) result.add(pair_->from_middle(d, place_[d]));
+    }
+    return result;
+  }
   certificates::PlaneSeparation<Degree> plane(std::size_t i) const {
     const std::size_t d = i / 2;
     const double margin = place_[d] == grown ? pair_->radius_ : 0.0;

@@ -36,9 +36,15 @@ class QuickDistance {
     });
   }
 
-  /// Moves the begin of a window, in seconds from now, to a time before which the gap is surely open; false if it is
-  /// until `end`, which is in the window.
-  bool cut(TimeWindow& window, double end) const;
+  /// Moves the begin of a window, in seconds from now, to a time before which the gap is surely open; false if it is so
+  /// at all times in the window up to `until`. If the motion is known for a part of these only, it begins where that
+  /// ends.
+  bool cut_until(TimeWindow& window, double until) const {
+    if (cut(window, std::min(window.end, motion_->tau(until) * (1 + 0x1p-40)))) return true;
+    if (motion_->whole() || motion_->tau(until) <= motion_->end()) return false;
+    window = {motion_->end(), motion_->end()};
+    return true;
+  }
 
   bool surely_closed(double tau) const {
     double farthest = 0;
@@ -53,6 +59,7 @@ class QuickDistance {
   double opened_by() const;
 
  private:
+  bool cut(TimeWindow& window, double end) const;
   std::span<const Along> coordinates() const { return {y_.data(), size_}; }
 
   const Quick* motion_ = nullptr;
@@ -63,6 +70,8 @@ class QuickDistance {
 
 // ---------------------------------------------------------------------------------------------------------------
 
+/// As cut_until(), up to `end` in seconds from now.
+///
 /// Error bound: coordinates y are known to the filter's error e, which has room for the roundings of shifting them; of
 /// size Y, their squares are off by 2 Y e + e^2 and a few roundings of Y^2.
 template <int Degree>

@@ -318,17 +318,6 @@ bool RoundedPolytope<Degree>::Piece::add_side(const DifferenceSide& side) {
   return !known || pair.motion_.clip(sides_.back().along, 1, sides_.back().height, window_);
 }
 
-/// Looks at the distance; false if b's place is not in the piece by a time.
-template <int Degree>
-bool RoundedPolytope<Degree>::Piece::cut(double until) {
-  if (solid_ || distance_.size() < 2) return true;
-  const Quick& motion = pair_->motion_;
-  const bool unknown = !motion.whole() && motion.tau(until) > motion.end();
-  if (distance_.cut(window_, std::min(window_.end, motion.tau(until) * (1 + 0x1p-40)))) return true;
-  if (unknown) window_ = pair_->after_end();
-  return unknown;
-}
-
 /// Calls ask(along, height) of a gap that is no distance, if it is known; else returns what that gives for nothing.
 template <int Degree>
 template <class Ask>

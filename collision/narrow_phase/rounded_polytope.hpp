@@ -152,7 +152,8 @@ class RoundedPolytope<Degree>::Piece {
   bool add_distance();
   bool add_side(const certificates::DifferenceSide& side);
   bool possible() const { return window_.begin <= window_.end; }
-  bool cut(double until);
+  /// Looks at the distance; false if b's place is not in the piece by a time.
+  bool cut(double until) { return solid_ || distance_.size() < 2 || distance_.cut_until(window_, until); }
   bool is_distance(std::size_t i) const { return !solid_ && i == sides_.size(); }
   template <class Ask>
   auto filter(std::size_t i, const Ask& ask) const;

@@ -151,17 +151,6 @@ void RoundedZonotope<Degree>::Piece::add_cell() {
   if (face.known) distance_.add(shifted(face.along, dot(face.normal, centre)));
 }
 
-/// Applies the distance; false if b's place is not in the piece by a time.
-template <int Degree>
-bool RoundedZonotope<Degree>::Piece::cut(double until) {
-  if (solid_ || distance_.size() < 2) return true;
-  const Quick& motion = pair_->motion_;
-  const bool unknown = !motion.whole() && motion.tau(until) > motion.end();
-  if (distance_.cut(window_, std::min(window_.end, motion.tau(until) * (1 + 0x1p-40)))) return true;
-  if (unknown) window_ = pair_->after_end();
-  return unknown;
-}
-
 template <int Degree>
 template <class Ask>
 auto RoundedZonotope<Degree>::Piece::with_gap(std::size_t i, const Ask& ask) const {

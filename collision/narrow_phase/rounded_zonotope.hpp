@@ -145,7 +145,8 @@ class RoundedZonotope<Degree>::Piece {
 
   void add_cell();
   bool possible() const { return window_.begin <= window_.end; }
-  bool cut(double until);
+  /// Looks at the distance; false if b's place is not in the piece by a time.
+  bool cut(double until) { return solid_ || distance_.size() < 2 || distance_.cut_until(window_, until); }
   bool is_distance(std::size_t i) const { return i == 2 * sides_.size(); }
   static double side(std::size_t i) { return i % 2 == 0 ? 1.0 : -1.0; }
 

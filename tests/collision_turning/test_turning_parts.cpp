@@ -289,7 +289,7 @@ TEST_CASE("Rest of bodies that turn: a copy comes to rest when the first does", 
   CHECK(third.told.back() == std::tuple(false, third.floor, ball));
 }
 
-TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves, or is not there", "[turning]") {
+TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves otherwise, or is not there", "[turning]") {
   Lying part;
   const BodySlot ball = part.add_ball(0);
   for (int flight = 0; flight <= 9; ++flight) part.touch(ball, flight);
@@ -299,7 +299,7 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves, or is
   auto moves = still;
   moves.path.coefficients[1] = Vector3d(0, 1, 0);
   part.bodies.move(ball, moves);
-  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests, and moves"));
+  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests, and does not move with what it rests on"));
   part.bodies.move(ball, still);
   CHECK_NOTHROW(part.rest.audit(part.clock.now));
   part.bodies[ball].entered = false;
@@ -310,6 +310,10 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves, or is
   image.pairs.clear();
   CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
                     Contains("rests on nothing"));
+  image = part.rest.image();
+  image.carried_at[ball][0] = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
+                    Contains("the velocity of what carries it is not finite"));
 }
 
 }  // namespace kds::collision::test_turning_parts

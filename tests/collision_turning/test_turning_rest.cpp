@@ -1,8 +1,8 @@
 // Bodies that turn come to rest, and wake.
-#include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
+#include "tests/collision_turning/rest_scenes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>
@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -21,79 +20,16 @@ namespace {
 
 using namespace kds;
 using namespace kds::collision;
-using certificates::RigidMotion;
-using Eigen::Quaterniond;
-using Eigen::Vector3d;
+using namespace kds::tests::rest;
 using kds::tests::Random;
 using kds::tests::random_vector;
-using Turning = TurningWorld<2>;
-using Body = Turning::Description;
 
-constexpr double gravity = 10;
-constexpr double flight = 1e-3;                      // WorldOptions::shortest_flight
-constexpr double reach = gravity * flight * flight;  // at which bodies hold each other
 constexpr double pi = 3.14159265358979323846;
-
-struct Log : Turning::Listener {
-  std::vector<std::string> lines;
-  int contacts = 0, rested = 0, woken = 0, passed = 0;
-
-  void note(const char* what, const PairEvent& event) {
-    char text[200];
-    std::snprintf(text, sizeof text, "%a %s %llu %llu %a %a %a", event.contact.time, what,
-                  static_cast<unsigned long long>(event.a), static_cast<unsigned long long>(event.b),
-                  event.contact.normal[2], event.contact.point[0], event.contact.point[1]);
-    lines.emplace_back(text);
-  }
-  void contact(Turning&, const PairEvent& event) override { ++contacts, note("contact", event); }
-  void rests(Turning&, const PairEvent& event) override { ++rested, note("rests", event); }
-  void wakes(Turning&, const PairEvent& event) override { ++woken, note("wakes", event); }
-  void rebound_suppressed(Turning&, const PairEvent& event) override { note("suppressed", event); }
-  void passes(Turning&, const PairEvent& event) override { ++passed, note("passes", event); }
-  void moved(Turning&, BodyId id) override { lines.push_back("moved " + std::to_string(id)); }
-};
-
-WorldOptions options(BroadPhaseKind kind = BroadPhaseKind::automatic) {
-  WorldOptions result{.response = Response::elastic, .broad_phase = kind};
-  result.shortest_flight = flight;
-  if (kind == BroadPhaseKind::sap) result.rate = 60;
-  return result;
-}
-
-/// That falls.
-Body body(const Shape& shape, const Vector3d& at, const Quaterniond& orientation = Quaterniond::Identity(),
-          const Vector3d& spin = Vector3d::Zero()) {
-  RigidMotion<2> motion{{{at, Vector3d::Zero(), Vector3d(0, 0, -gravity / 2)}}};
-  motion.orientation = orientation;
-  motion.angular_velocity = spin;
-  return {.shape = shape, .motion = {motion}, .restitution = 0.3, .friction = 0.5};
-}
-
-Body fixed(const Shape& shape, const Vector3d& at, const Quaterniond& orientation = Quaterniond::Identity()) {
-  Body result = body(shape, at, orientation);
-  result.motion[0].path.coefficients[2] = Vector3d::Zero();
-  result.fixed = true;
-  return result;
-}
-
-/// Up to the height 0.
-Body ground() { return fixed(Box{Vector3d(20, 20, 1)}, {0, 0, -1}); }
-
-Quaterniond tilted(double angle, const Vector3d& axis) {
-  const Vector3d v = std::sin(angle / 2) * axis.normalized();
-  return {std::cos(angle / 2), v[0], v[1], v[2]};
-}
 
 Quaterniond any_orientation(Random& random) {
   const double w = random.between(-1, 1);
   const Vector3d v = random_vector(random, 1);
   return {w, v[0], v[1], v[2]};
-}
-
-bool still(const Turning& world, BodyId id) {
-  const auto& motion = world.motion(id);
-  return motion.path.coefficients[1].isZero(0) && motion.path.coefficients[2].isZero(0) &&
-         motion.angular_velocity.isZero(0);
 }
 
 /// The lowest corner of a box.

@@ -40,23 +40,31 @@ class BodyFrame {
   double length_;
 };
 
+/// The greatest speed of a point of a body, seen from what moves with a velocity.
 template <class Motion>
-double surface_speed(const Motion& motion, double radius, double t) {
-  return norm(motion.path.velocity(t)) + norm(motion.angular_velocity) * radius;
+double surface_speed(const Motion& motion, const Vector3d& velocity, double radius, double t) {
+  return norm(motion.path.velocity(t) - velocity) + norm(motion.angular_velocity) * radius;
 }
 
+/// Whether a body does not turn, and stands still or moves at a constant velocity.
 template <class Motion>
-bool stands(const Motion& motion) {
+bool glides(const Motion& motion) {
   const auto& path = motion.path.coefficients;
   return motion.angular_velocity.isZero(0) &&
-         std::all_of(path.begin() + 1, path.end(), [](const Vector3d& x) { return x.isZero(0); });
+         std::all_of(path.begin() + 2, path.end(), [](const Vector3d& x) { return x.isZero(0); });
+}
+template <class Motion>
+bool glides_with(const Motion& motion, const Vector3d& velocity) {
+  return glides(motion) && motion.path.coefficients[1] == velocity;
 }
 
+/// From a time on a body does not turn, and moves at a velocity.
 template <class Motion>
-Motion stopped(const Motion& motion, double t) {
+Motion gliding_with(const Motion& motion, const Vector3d& velocity, double t) {
   Motion result = motion.restarted(t);
   auto& path = result.path.coefficients;
-  std::fill(path.begin() + 1, path.end(), Vector3d::Zero());
+  path[1] = velocity;
+  std::fill(path.begin() + 2, path.end(), Vector3d::Zero());
   result.angular_velocity = Vector3d::Zero();
   return result;
 }

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -59,16 +60,17 @@ void archive_members(Archive& archive, LyingPair& pair) {
 }  // namespace detail
 
 /// Rest in worlds of bodies that turn: not of contacts that slide or roll, but of groups of bodies that do not move at
-/// all. docs/turning.md states the law.
+/// all, or only with what carries them. docs/turning.md states the law.
 ///
 /// Bodies that are pressed together make flights of WorldOptions::shortest_flight, again and again. A body is *calm*
-/// while no point of it is faster than such flights make it. Where calm bodies touch is noted. A group is all bodies
+/// while no point of it is faster than such flights make it, seen from the fixed body that it lies on, directly or
+/// through others: that may glide, as a belt or a lift does. Where calm bodies touch is noted. A group is all bodies
 /// that are linked by such places, down to fixed ones. When all bodies of a group have been calm for some flights, and
 /// forces at these places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then
-/// on they do not move at all, and cost nothing. Bodies of a group that are held without its other bodies come to rest
-/// after a while even if those move. An impact wakes the bodies that it moves, and those that they have held; a change
-/// of a body, or of a support, wakes the whole group. A calm body wakes nothing that it touches: if forces hold it too,
-/// it comes to rest as well, and if not, those bodies wake that cannot carry it.
+/// on they move with those fixed bodies, mostly not at all, and cost nothing. Bodies of a group that are held without
+/// its other bodies come to rest after a while even if those move. An impact wakes the bodies that it moves, and those
+/// that they have held; a change of a body, or of a support, wakes the whole group. A calm body wakes nothing that it
+/// touches: if forces hold it too, it comes to rest as well, and if not, those bodies wake that cannot carry it.
 ///
 /// This part of World owns its state. It reads the bodies, and tells its listener what follows. All of it is a function
 /// of contacts and edits, and does not depend on the broad phase, windows or snapshots.
@@ -133,7 +135,7 @@ class TurningRest {
   static constexpr bool certify() { return false; }
   static void process() {}
   static void extend_horizon() {}
-  /// Throws AuditFailure unless bodies that rest do not move, and rest on something.
+  /// Throws AuditFailure unless bodies that rest move with what they rest on.
   void audit(double t) const;
 
   /// How impulses that were too small to wake a body at rest would make it move if it lay on nothing.
@@ -159,11 +161,13 @@ class TurningRest {
     std::vector<double> looked;
     std::vector<char> rests;
     std::vector<Ignored> ignored;
+    std::vector<Eigen::Vector3d> carried_at;  ///< by body
     std::vector<BodySlot> woken;
 
     template <class Archive>
     void archive(Archive& archive) {
       archive(since, looked, rests, ignored, woken);
+      archive.each(carried_at, [&](Eigen::Vector3d& velocity) { image::vector(archive, velocity); });
       archive.each(pairs, [&](One& one) { archive(one.a, one.b, one.pair); });
     }
     /// Throws std::runtime_error, naming what is wrong.
@@ -183,7 +187,8 @@ class TurningRest {
     double looked = -never;        ///< s; when its group was last found not to be at rest
     bool rests = false;
     Ignored ignored;
-    std::uint64_t seen = 0;  ///< the last walk that has visited it
+    Eigen::Vector3d carried_at = Eigen::Vector3d::Zero();  ///< if there are others: the velocity of what they lie on
+    std::uint64_t seen = 0;                                ///< the last walk that has visited it
     std::uint32_t place = 0;
   };
   /// Of the bodies of a pair that are not fixed.
@@ -215,7 +220,8 @@ class TurningRest {
   Scale scale(Key key) const;
   double reach(const Scale& scale) const;
   double calm_speed(const Scale& scale) const;
-  bool calm(BodySlot slot, double acceleration) const;
+  std::optional<Eigen::Vector3d> support_velocity(BodySlot a, BodySlot b) const;
+  bool calm(BodySlot slot, double acceleration, const Eigen::Vector3d& support_velocity) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note(Key key, const collision::Contact& contact);
   Group find_group(BodySlot first, bool resting = false);

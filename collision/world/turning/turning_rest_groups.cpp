@@ -197,7 +197,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
         if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
         if (!std::exchange(links, true) && !bodies_.fixed(other)) visit(other);
         if (!rests && (((friction == 0 || smooth) && slides(key, place.normal)) ||
-                       (bodies_.fixed(other) && !stands(bodies_.motion(other))))) {
+                       (bodies_.fixed(other) && !glides_with(bodies_.motion(other), of_[slot].carried_at)))) {
           busy.push_back(of_[slot].place);
           if (!bodies_.fixed(other)) busy.push_back(of_[other].place);
         }

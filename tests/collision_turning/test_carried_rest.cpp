@@ -1,0 +1,199 @@
+// Bodies that turn come to rest on what glides: belts, lifts and carts.
+#include "kds/framework/snapshot.hpp"
+
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
+#include "tests/collision_turning/rest_scenes.hpp"
+#include "tests/support/random_numbers.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace test_carried_rest {
+namespace {
+
+using namespace kds;
+using namespace kds::tests::rest;
+using kds::tests::Random;
+using kds::tests::random_vector;
+
+/// A fixed body that moves.
+Body moving(Body body, const Vector3d& velocity) {
+  body.motion[0].path.coefficients[1] = velocity;
+  return body;
+}
+
+bool moves_at(const Turning& world, BodyId id, const Vector3d& velocity) {
+  const auto& motion = world.motion(id);
+  return motion.path.coefficients[1] == velocity && motion.path.coefficients[2].isZero(0) &&
+         motion.angular_velocity.isZero(0);
+}
+
+Vector3d place(const Turning& world, BodyId id) { return world.motion(id).path.position(world.now()); }
+
+/// A stack of three boxes above a body whose upper side is at the height 0 at first.
+void add_stack(Turning& world) {
+  for (int i = 0; i < 3; ++i) {
+    world.add_body(body(Box{Vector3d(0.5, 0.5, 0.25)}, {0.02 * (i % 2), 0, 0.55 * i + 0.35}));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a stack comes to rest on a belt and is carried, the same with all broad phases and snapshots", "[rest]") {
+  const Vector3d belt(0.7, -0.2, 0);
+  std::vector<std::string> expected;
+  for (const auto kind : {BroadPhaseKind::automatic, BroadPhaseKind::all_pairs, BroadPhaseKind::kinetic_sap,
+                          BroadPhaseKind::grid, BroadPhaseKind::sap}) {
+    for (const bool saves : {false, true}) {
+      if (saves && kind != BroadPhaseKind::automatic) continue;
+      CAPTURE(static_cast<int>(kind), saves);
+      Log log;
+      auto world = std::make_unique<Turning>(options(kind), &log);
+      world->add_body(moving(ground(), belt));
+      add_stack(*world);
+      for (int k = 1; k <= 32; ++k) {
+        world->advance_to(k / 8.0);
+        if (!saves) continue;
+        world->audit();
+        const auto image = save(*world);
+        world = std::make_unique<Turning>(options(kind), &log);
+        restore(image, *world);
+      }
+      for (BodyId i = 0; i < 3; ++i) CHECK(world->resting(i, i + 1));
+      for (BodyId i = 1; i <= 3; ++i) CHECK(moves_at(*world, i, belt));
+      CHECK(log.passed == 0);
+      CHECK(log.rested - log.woken == 3);
+      CHECK(std::abs(place(*world, 3)[2] - 1.25) < 6 * reach);
+      world->audit();
+      // From then on nothing happens, however long it takes.
+      const int contacts = log.contacts;
+      const Vector3d from_belt = place(*world, 1) - place(*world, 0);
+      if (kind == BroadPhaseKind::automatic) {
+        world->advance_to(1000);
+        CHECK((place(*world, 1) - place(*world, 0) - from_belt).norm() < 1e-12);
+      }
+      CHECK(log.contacts == contacts);
+      if (expected.empty()) expected = log.lines;
+      CHECK(log.lines == expected);
+    }
+  }
+}
+
+TEST_CASE("a lift carries what rests on it, and wakes it where it stops", "[rest]") {
+  for (const double speed : {1.5, -0.75, 0.005}) {
+    CAPTURE(speed);
+    Log log;
+    Turning world(options(), &log);
+    Body lift = moving(ground(), {0, 0, speed});
+    RigidMotion<2> stops = lift.motion[0];
+    stops.path.start = 4;
+    stops.path.coefficients = {Vector3d(0, 0, -1 + 4 * speed), Vector3d::Zero(), Vector3d::Zero()};
+    lift.motion.push_back(stops);
+    world.add_body(lift);
+    add_stack(world);
+    world.advance_to(3.5);
+    for (BodyId i = 0; i < 3; ++i) CHECK(world.resting(i, i + 1));
+    for (BodyId i = 1; i <= 3; ++i) CHECK(moves_at(world, i, {0, 0, speed}));
+    CHECK(world.free_motion(1).path.coefficients[1] == Vector3d(0, 0, speed));
+    CHECK(world.free_motion(1).path.coefficients[2] == Vector3d(0, 0, -gravity / 2));
+    world.audit();
+    world.advance_to(4);
+    for (BodyId i = 0; i < 3; ++i) CHECK_FALSE(world.resting(i, i + 1));
+    world.advance_to(10);
+    for (BodyId i = 1; i <= 3; ++i) CHECK(still(world, i));
+    CHECK(std::abs(place(world, 1)[2] - (4 * speed + 0.25)) < 2 * reach);
+    CHECK(std::abs(place(world, 3)[2] - (4 * speed + 1.25)) < 6 * reach);
+    CHECK(log.passed == 0);
+    world.audit();
+  }
+}
+
+TEST_CASE("a cart that accelerates or turns lets nothing rest", "[rest]") {
+  const bool turns = GENERATE(false, true);
+  CAPTURE(turns);
+  Log log;
+  Turning world(options(), &log);
+  Body cart = ground();
+  if (turns) {
+    cart.motion[0].angular_velocity = {0, 0, 0.125};
+  } else {
+    cart.motion[0].path.coefficients[2] = {0.25, 0, 0};
+  }
+  world.add_body(cart);
+  add_stack(world);
+  world.advance_to(2);
+  CHECK(log.rested == 0);
+  CHECK(log.passed == 0);
+  CHECK(place(world, 3)[2] > 1.2);  // It is carried all the same, in shortest flights.
+  if (!turns) CHECK(std::abs(place(world, 1)[0] - place(world, 0)[0]) < 0.02);
+}
+
+TEST_CASE("on two belts of different speeds nothing rests, on two of the same it does", "[rest]") {
+  const double other = GENERATE(0.25, 0.5);
+  CAPTURE(other);
+  Log log;
+  Turning world(options(), &log);
+  world.add_body(moving(fixed(Box{Vector3d(20, 1, 1)}, {0, -1, -1}), {0.5, 0, 0}));
+  world.add_body(moving(fixed(Box{Vector3d(20, 1, 1)}, {0, 1, -1}), {other, 0, 0}));
+  const BodyId box = world.add_body(body(Box{Vector3d(0.5, 0.5, 0.25)}, {0, 0, 0.3}));
+  world.advance_to(2);
+  CHECK(world.resting(0, box) == (other == 0.5));
+  CHECK(world.resting(1, box) == (other == 0.5));
+  CHECK(log.passed == 0);
+  CHECK(place(world, box)[2] > 0.24);
+}
+
+TEST_CASE("what a belt carries wakes at a wall, and where another comes to lie", "[rest]") {
+  Log log;
+  Turning world(options(), &log);
+  world.add_body(moving(ground(), {1, 0, 0}));
+  const BodyId wall = world.add_body(fixed(Box{Vector3d(0.25, 5, 5)}, {4, 0, 5.5}));
+  const BodyId first = world.add_body(body(Box{Vector3d::Constant(0.25)}, {0, 0, 0.3}));
+  world.advance_to(2);
+  CHECK(moves_at(world, first, {1, 0, 0}));
+  const BodyId second = world.add_body([&] {
+    Body late = body(Box{Vector3d::Constant(0.2)}, place(world, first) + Vector3d(0, 0, 0.5));
+    late.motion[0].path.start = 2;
+    late.motion[0].path.coefficients[1] = {1, 0, 0};
+    return late;
+  }());
+  world.advance_to(3);
+  CHECK(world.resting(first, second));
+  CHECK(moves_at(world, second, {1, 0, 0}));
+  world.audit();
+  world.advance_to(4);  // It is at the wall since 3.5 s.
+  CHECK_FALSE(world.resting(0, first));
+  CHECK(place(world, first)[0] < 3.5 + 1e-12);
+  CHECK(place(world, first)[2] > 0.2);
+  CHECK_FALSE(world.resting(wall, first));
+  CHECK(log.passed == 0);
+}
+
+TEST_CASE("boxes thrown on a gliding floor come to rest on it, at any velocity", "[rest]") {
+  int at_rest = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const Vector3d velocity = random_vector(random, 3);
+    Log log;
+    Turning world(options(), &log);
+    world.add_body(moving(ground(), velocity));
+    Body die = body(Box{Vector3d(0.3, 0.4, 0.5)}, {0, 0, 2}, tilted(random.between(-2, 2), {1, 0.5, 0.25}),
+                    random_vector(random, 3));
+    die.motion[0].path.coefficients[1] = velocity + random_vector(random, 1);
+    const BodyId id = world.add_body(die);
+    for (int k = 1; k <= 80 && !moves_at(world, id, velocity); ++k) world.advance_to(k / 4.0);
+    at_rest += moves_at(world, id, velocity);
+    CHECK(place(world, id)[2] - place(world, 0)[2] > 1.29);
+    CHECK(log.passed == 0);
+    world.audit();
+  }
+  CHECK(at_rest == 12);
+}
+
+}  // namespace test_carried_rest
