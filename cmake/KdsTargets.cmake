@@ -58,8 +58,8 @@ target_compile_options(kds_warnings INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
 
 # kds_compile_together(target FILES): the files of a target, so many at a time, as one: what they include and
-# instantiate in common is compiled once, which is most of the time. The preset `release` does without, so that a file
-# that does not include what it needs, or uses a name of another file's, is seen there.
+# instantiate in common is compiled once, which is most of the time. scripts/test-apart does without, so that a file that
+# does not include what it needs, or uses a name of another file's, is seen there.
 option(KDS_COMPILE_TOGETHER "Compile several files as one: a third of the time" ON)
 function(kds_compile_together target files)
   if(KDS_COMPILE_TOGETHER)
@@ -72,9 +72,8 @@ endfunction()
 
 # kds_read_headers_once(target...): in a build with tests, the headers of others that are half of most files are
 # compiled once for all these targets, and read as they were compiled. Not our own: whoever changes one waits for what
-# includes it only. Nor for libraries that are linked into the Python module, whose code is compiled otherwise. The
-# preset `release` does without this too. g++ takes the level of optimisation from the precompiled headers, whatever a
-# target says: so no target says another one.
+# includes it only. Nor for libraries that are linked into the Python module, whose code is compiled otherwise. g++
+# takes the level of optimisation from the precompiled headers, whatever a target says: so no target says another one.
 function(kds_read_headers_once)
   if(NOT KDS_COMPILE_TOGETHER OR NOT KDS_BUILD_TESTS)
     return()
