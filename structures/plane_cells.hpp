@@ -46,6 +46,7 @@ class PlaneCells {
   using Index = std::uint32_t;
   static constexpr Index outside = 0;  ///< the cell without bound
 
+  /// One side of an edge.
   struct HalfEdge {
     Index from;  ///< vertex
     Index next;  ///< in the loop

@@ -18,6 +18,8 @@
 #include <vector>
 
 namespace test_growing_cells {
+namespace {
+
 using namespace kds;
 using namespace kds::tests;
 using namespace kds::tests::growing;
@@ -87,6 +89,8 @@ std::vector<PlaneBySlabs::Part> tracks(Structure& structure) {
 PlaneCells cells_of(const Structure& structure) {
   return structures::cells_of(structure.segments.rule(), structure.ends, structure.simulator.now());
 }
+
+}  // namespace
 
 TEST_CASE("cells between growing segments are those by brute force, whatever comes, goes or coincides",
           "[growing_cells]") {

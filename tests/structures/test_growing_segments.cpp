@@ -15,6 +15,7 @@
 #include <vector>
 
 namespace test_growing_segments {
+
 using namespace kds;
 using namespace kds::tests;
 using namespace kds::tests::growing;
