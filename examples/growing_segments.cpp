@@ -1,11 +1,14 @@
 // You learn: to divide a square by segments that grow until they meet, and to take one in on the way.
 // How to run: build/dev/examples/growing_segments [picture.svg]
-// What you see: 61 segments divide the square into 62 cells
+// What you see: 61 segments divide the square into 62 cells, of which the largest is 4.85273 % of it
 #include "structures/growing_segments.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
+#include "structures/growing_cells.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <iostream>
@@ -45,8 +48,13 @@ int main(int arguments, char** argument) {
   while (simulator.step(1e6)) {
   }
 
-  // Each segment that has stopped at both ends has cut a cell in two.
+  // Cell 0 is what is outside of the square.
   const GrowingSegmentsRule& rule = segments.rule();
+  const structures::PlaneCells cells = structures::cells_of(rule, ends, simulator.now());
+  double largest = 0;
+  for (std::uint32_t cell = 1; cell < cells.size(); ++cell) {
+    largest = std::max(largest, cells.area(cell, 60).approximate());
+  }
   std::size_t stopped = 0;
   std::vector<std::array<double, 4>> tracks;
   for (const Id id : ends.ids()) {
@@ -55,7 +63,8 @@ int main(int arguments, char** argument) {
     const auto from = ends[id].path(ends[id].path.start), to = rule.tip(ends[id], id, simulator.now());
     tracks.push_back({from[0], from[1], to[0], to[1]});
   }
-  std::cout << stopped / 2 << " segments divide the square into " << stopped / 2 + 1 << " cells\n"
+  std::cout << stopped / 2 << " segments divide the square into " << cells.size() - 1
+            << " cells, of which the largest is " << largest << " % of it\n"
             << segments.measures().events << " events, of which " << segments.measures().external
             << " stopped an end\n";
 
@@ -63,7 +72,17 @@ int main(int arguments, char** argument) {
   std::ofstream picture(argument[1]);
   picture << "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-0.2 -0.2 10.4 10.4\" width=\"520\" height=\"520\">\n"
           << "<rect x=\"-0.2\" y=\"-0.2\" width=\"10.4\" height=\"10.4\" fill=\"#ffffff\"/>\n"
-          << "<g stroke=\"#1b6ca8\" stroke-width=\"0.05\" stroke-linecap=\"round\" fill=\"none\">\n"
+          << "<g fill-opacity=\"0.25\">\n";
+  const std::array colours{"#e9c46a", "#2a9d8f", "#f4a261", "#8ab17d", "#a8c5e2"};
+  for (std::uint32_t cell = 1; cell < cells.size(); ++cell) {
+    picture << "<path fill=\"" << colours[cell % colours.size()] << "\" d=\"M";
+    for (const std::uint32_t side : cells.loop(cells.loops(cell)[0])) {
+      const auto [x, y] = cells.vertices()[cells.half_edges()[side].from].truncated(40);
+      picture << x.approximate() << " " << y.approximate() << " ";
+    }
+    picture << "Z\"/>\n";
+  }
+  picture << "</g>\n<g stroke=\"#1b6ca8\" stroke-width=\"0.05\" stroke-linecap=\"round\" fill=\"none\">\n"
           << "<rect width=\"10\" height=\"10\" stroke=\"#333333\"/>\n";
   for (const auto& [x, y, to_x, to_y] : tracks)
     picture << "<path d=\"M" << x << " " << y << "L" << to_x << " " << to_y << "\"/>\n";

@@ -72,6 +72,8 @@ class GrowingSegmentsRule {
   Id stopped_by(Id end) const { return ends_[end].stop ? ends_[end].ahead.back() : nobody; }
   /// When the end stopped, rounded up to a double; `never` while it grows. Precondition: the end is there.
   double stop_time(Id end) const { return ends_[end].stop ? ends_[end].time : never; }
+  /// Where it stopped, exactly: its arrival there, with the paths of both as they were. Precondition: it has stopped.
+  const certificates::Arrival& stopped_at(Id end) const { return *ends_[end].arrival; }
   /// Where the tip of the track is at a time, rounded. Preconditions: the end is there, and t >= the start of its path.
   std::array<double, 2> tip(const Element& element, Id end, double t) const {
     return element.path(std::min(t, stop_time(end)));

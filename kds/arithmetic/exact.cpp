@@ -58,9 +58,12 @@ int Exact::sign() const { return mantissa().integer.sign(); }
 double Exact::approximate() const {
   const auto& integer = mantissa().integer;
   if (integer.is_zero()) return 0;
-  const auto bits = static_cast<int>(boost::multiprecision::msb(boost::multiprecision::abs(integer)));
+  // Magnitudes are shifted, not negative numbers: Boost 1.74 loses the sign of those whose last 64 bits are a one.
+  const Mantissa::Integer size = boost::multiprecision::abs(integer);
+  const auto bits = static_cast<int>(boost::multiprecision::msb(size));
   const int excess = bits > 62 ? bits - 62 : 0;
-  const auto leading = static_cast<std::int64_t>(integer >> excess);
+  const std::int64_t leading = integer.sign() > 0 ? static_cast<std::int64_t>(size >> excess)
+                                                  : -1 - static_cast<std::int64_t>((size - 1) >> excess);
   return std::ldexp(static_cast<double>(leading), exponent_ + excess);
 }
 

@@ -116,6 +116,14 @@ TEST_CASE("approximations are the nearest double or its neighbour", "[exact]") {
       CHECK(near);
     }
   }
+  // -2^k - 1 as an integer of several words, the last of which is 1; and its neighbours.
+  const Exact one = Exact(0x1p52 + 1) - Exact(0x1p52);
+  for (const double large : {0x1p72, 0x1p73, 0x1.5d8p200}) {
+    for (const Exact& little : {one, Exact(), -one}) {
+      CHECK((-Exact(large) - little).approximate() == -large);
+      CHECK((Exact(large) + little).approximate() == large);
+    }
+  }
   CHECK((Exact(largest) * Exact(2.0)).approximate() == std::numeric_limits<double>::infinity());
   CHECK((Exact(-largest) * Exact(2.0)).approximate() == -std::numeric_limits<double>::infinity());
   CHECK((Exact(least) * Exact(0.25)).approximate() == 0);
