@@ -260,4 +260,41 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   CHECK(world.motion(id) == still);
 }
 
+TEST_CASE("a body that turns and has no room between two walls stands still along their axis", "[turning][walls]") {
+  struct Told : Turning<2>::Listener {
+    int walls = 0, suppressed = 0;
+    void wall(Turning<2>&, const WallEvent&) override { ++walls; }
+    void rebound_suppressed_at_wall(Turning<2>&, const WallEvent&) override { ++suppressed; }
+  };
+  constexpr double end = 0x1p-6;  // s
+  for (const double centre : {0.0, 0.1, -0x1p20}) {
+    for (const double room : {0.0, 0x1p-45, 0x1p-21, 0.5}) {
+      for (const double weight : {0.0, 10.0}) {
+        for (const double restitution : {1.0, 0.5}) {
+          CAPTURE(centre, room, weight, restitution);
+          WorldOptions options;
+          options.response = Response::elastic;
+          options.walls = Walls{{-9, -9, centre - 1 - room / 2}, {9, 9, centre + 1 + room / 2}, restitution};
+          Told told;
+          Turning<2> world(options, &told);
+          RigidMotion<2> falls = motion<2>({0, 0, centre}, {2, 0, 0.125}, {0, 1, 0});
+          falls.path.coefficients[2] = {0, 0, -weight / 2};
+          const BodyId id = world.add_body({.shape = Sphere{1}, .motion = {falls}});
+          int steps = 0;
+          while (steps < 20000 && world.step(end)) ++steps;
+          CHECK(steps < 20000);
+          world.audit();
+          const auto& path = world.motion(id).path;
+          CHECK(path.velocity(end)[0] == 2);
+          CHECK(std::abs(path.position(end)[2] - centre) <= room / 2 + 0x1p-30);
+          const bool held = room < 0x1p-40 || (room < 0x1p-20 && weight > 0 && restitution < 1);
+          CHECK((told.suppressed > 0) == held);
+          if (held) CHECK(path.velocity(end)[2] == 0);
+          if (room == 0.5) CHECK(told.walls < 200);
+        }
+      }
+    }
+  }
+}
+
 }  // namespace test_turning_attacks
