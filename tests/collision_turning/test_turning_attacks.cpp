@@ -61,6 +61,16 @@ RigidMotion<Degree> motion(const Vector3d& position, const Vector3d& velocity, c
   return result;
 }
 
+std::vector<Vector3d> corners_of_cube() {
+  std::vector<Vector3d> corners;
+  for (const double x : {-1, 1}) {
+    for (const double y : {-1, 1}) {
+      for (const double z : {-1, 1}) corners.emplace_back(x, y, z);
+    }
+  }
+  return corners;
+}
+
 Quaterniond random_orientation(Random& random) {
   const Vector3d v = random_vector(random, 1);
   return {random.between(-1, 1), v[0], v[1], v[2]};
@@ -293,6 +303,37 @@ TEST_CASE("a body that turns and has no room between two walls stands still alon
           if (room == 0.5) CHECK(told.walls < 200);
         }
       }
+    }
+  }
+}
+
+TEST_CASE("small bodies that spin fast keep their energy", "[turning]") {
+  for (const double unit : {1.0, 1e-3}) {          // m
+    for (const double speed : {1.0, 3.0, 30.0}) {  // m/s
+      CAPTURE(unit, speed);
+      Random random(7);
+      WorldOptions options;
+      options.response = Response::elastic;
+      options.walls = Walls{Vector3d::Constant(-4 * unit), Vector3d::Constant(4 * unit), 1};
+      Turning<1> world(options);
+      for (const Vector3d& corner : corners_of_cube()) {
+        const auto flies = motion<1>(2 * unit * corner, random_vector(random, speed),
+                                     random_vector(random, speed / unit), Quaterniond::Identity());
+        world.add_body({.shape = Box{unit * Vector3d(0.5, 0.75, 1)}, .motion = {flies}});
+      }
+      const auto energy = [&] {
+        double twice = 0;
+        for (BodyId id = 0; id < world.size(); ++id) {
+          const FreeTurning turning = world.free_turning(id);
+          twice += world.motion(id).path.velocity(world.now()).squaredNorm() +
+                   turning.angular_velocity.dot(turning.angular_momentum);
+        }
+        return twice / 2;
+      };
+      const double before = energy();
+      world.advance_to(50 * unit / speed);
+      CHECK(world.counters().contacts > 50);
+      CHECK(energy() == Approx(before).epsilon(1e-9));
     }
   }
 }

@@ -83,6 +83,16 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
     normal_turns = cross(motion_b.angular_velocity, n);
   }
   double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
+  // What presses because bodies turn does so while they turn by a small angle. A speed for the whole of a shortest
+  // flight would multiply the energy of bodies that spin fast.
+  constexpr double most_turn = 0x1p-3;  // rad
+  const double turn =
+      options_.shortest_flight * std::max(norm(motion_a.angular_velocity), norm(motion_b.angular_velocity));
+  if (turn > most_turn) {
+    const double of_paths =
+        -dot(n, motion_b.path.acceleration(contact.time) - motion_a.path.acceleration(contact.time));
+    pressed = of_paths + most_turn / turn * (pressed - of_paths);
+  }
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
   for (const Motion* motion : {&motion_a, &motion_b}) {
