@@ -145,7 +145,10 @@ OutputFile::OutputFile(const std::string& path, std::optional<std::uint64_t> fro
     : path_(path), target_(resolved(path)), goes_on_(true) {
   std::error_code error;
   const file_type kind = std::filesystem::status(target_, error).type();
-  if (kind != file_type::regular && kind != file_type::not_found) fail(EINVAL, true);
+  if (kind == file_type::directory) fail(EISDIR, true);
+  if (kind != file_type::regular && kind != file_type::not_found) {
+    throw OutputError(path_ + ": file: cannot be that of a run in parts: it is a pipe or a device", true);
+  }
   const std::filesystem::path unfinished = unfinished_path(path);
   const std::filesystem::path begun = from.value_or(0) > 0 ? begun_path(path) : unfinished;
   if (from) file_ = std::fopen(begun.c_str(), "r+b");

@@ -61,6 +61,16 @@ RigidMotion<Degree> motion(const Vector3d& position, const Vector3d& velocity, c
   return result;
 }
 
+std::vector<Vector3d> corners_of_cube() {
+  std::vector<Vector3d> corners;
+  for (const double x : {-1, 1}) {
+    for (const double y : {-1, 1}) {
+      for (const double z : {-1, 1}) corners.emplace_back(x, y, z);
+    }
+  }
+  return corners;
+}
+
 Quaterniond random_orientation(Random& random) {
   const Vector3d v = random_vector(random, 1);
   return {random.between(-1, 1), v[0], v[1], v[2]};
@@ -258,6 +268,74 @@ TEST_CASE("descriptions of bodies that cannot turn are refused, and nothing is a
   bad = still, bad.orientation = Quaterniond(0, 0, 0, 0);
   CHECK_THROWS_WITH(world.update_motion(id, bad), Catch::Contains("orientation"));
   CHECK(world.motion(id) == still);
+}
+
+TEST_CASE("a body that turns and has no room between two walls stands still along their axis", "[turning][walls]") {
+  struct Told : Turning<2>::Listener {
+    int walls = 0, suppressed = 0;
+    void wall(Turning<2>&, const WallEvent&) override { ++walls; }
+    void rebound_suppressed_at_wall(Turning<2>&, const WallEvent&) override { ++suppressed; }
+  };
+  constexpr double end = 0x1p-6;  // s
+  for (const double centre : {0.0, 0.1, -0x1p20}) {
+    for (const double room : {0.0, 0x1p-45, 0x1p-21, 0.5}) {
+      for (const double weight : {0.0, 10.0}) {
+        for (const double restitution : {1.0, 0.5}) {
+          CAPTURE(centre, room, weight, restitution);
+          WorldOptions options;
+          options.response = Response::elastic;
+          options.walls = Walls{{-9, -9, centre - 1 - room / 2}, {9, 9, centre + 1 + room / 2}, restitution};
+          Told told;
+          Turning<2> world(options, &told);
+          RigidMotion<2> falls = motion<2>({0, 0, centre}, {2, 0, 0.125}, {0, 1, 0});
+          falls.path.coefficients[2] = {0, 0, -weight / 2};
+          const BodyId id = world.add_body({.shape = Sphere{1}, .motion = {falls}});
+          int steps = 0;
+          while (steps < 20000 && world.step(end)) ++steps;
+          CHECK(steps < 20000);
+          world.audit();
+          const auto& path = world.motion(id).path;
+          CHECK(path.velocity(end)[0] == 2);
+          CHECK(std::abs(path.position(end)[2] - centre) <= room / 2 + 0x1p-30);
+          const bool held = room < 0x1p-40 || (room < 0x1p-20 && weight > 0 && restitution < 1);
+          CHECK((told.suppressed > 0) == held);
+          if (held) CHECK(path.velocity(end)[2] == 0);
+          if (room == 0.5) CHECK(told.walls < 200);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("small bodies that spin fast keep their energy", "[turning]") {
+  for (const double unit : {1.0, 1e-3}) {          // m
+    for (const double speed : {1.0, 3.0, 30.0}) {  // m/s
+      CAPTURE(unit, speed);
+      Random random(7);
+      WorldOptions options;
+      options.response = Response::elastic;
+      options.walls = Walls{Vector3d::Constant(-4 * unit), Vector3d::Constant(4 * unit), 1};
+      Turning<1> world(options);
+      for (const Vector3d& corner : corners_of_cube()) {
+        const auto flies = motion<1>(2 * unit * corner, random_vector(random, speed),
+                                     random_vector(random, speed / unit), Quaterniond::Identity());
+        world.add_body({.shape = Box{unit * Vector3d(0.5, 0.75, 1)}, .motion = {flies}});
+      }
+      const auto energy = [&] {
+        double twice = 0;
+        for (BodyId id = 0; id < world.size(); ++id) {
+          const FreeTurning turning = world.free_turning(id);
+          twice += world.motion(id).path.velocity(world.now()).squaredNorm() +
+                   turning.angular_velocity.dot(turning.angular_momentum);
+        }
+        return twice / 2;
+      };
+      const double before = energy();
+      world.advance_to(50 * unit / speed);
+      CHECK(world.counters().contacts > 50);
+      CHECK(energy() == Approx(before).epsilon(1e-9));
+    }
+  }
 }
 
 }  // namespace test_turning_attacks

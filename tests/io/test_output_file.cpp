@@ -118,7 +118,10 @@ TEST_CASE("output file: one that takes several runs stays unfinished, and is gon
   }
   CHECK(read_file(path) == "one,two");
   CHECK(folder.file_count() == 1);
-  CHECK_THROWS_AS(OutputFile("/dev/null", std::nullopt), OutputError);
+  CHECK_THROWS_WITH(OutputFile("/dev/null", std::nullopt),
+                    "/dev/null: file: cannot be that of a run in parts: it is a pipe or a device");
+  const std::string below = (folder / "").string();
+  CHECK_THROWS_WITH(OutputFile(below, std::nullopt), below + ": file: cannot be written: Is a directory");
   // One that was killed when this had its place, and other outputs had not.
   {
     const OutputFile file(path, 4);

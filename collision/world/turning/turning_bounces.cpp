@@ -24,6 +24,15 @@ void give_impulse(RigidVelocity& body, const Mobility& mobility, const Vector3d&
   body.angular_velocity += mobility.turned_by(cross(arm, impulse));
 }
 
+/// Whether a body between two opposite walls that leaves one of them with a speed is back before the clock has gone on
+/// by much, so that it would bounce between the two endlessly at one instant. `forced`: it is that fast only since it
+/// is pressed to the wall, for a flight that is higher than its room. `size`: magnitude of the coordinates.
+bool has_no_room(const ZenoPolicy& zeno, double room, double speed, double pressed, bool forced, double size) {
+  const double shortest = zeno.interval / std::max(zeno.contacts, 1u);
+  if (room <= std::max(shortest * speed, 0x1p-48 * size)) return true;
+  return forced && pressed > 0 && 2 * pressed * room <= speed * speed;
+}
+
 }  // namespace
 
 /// The rate at which b parts from a at the point of contact; 0 where it is no larger than roundings.
@@ -74,6 +83,16 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
     normal_turns = cross(motion_b.angular_velocity, n);
   }
   double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
+  // What presses because bodies turn does so while they turn by a small angle. A speed for the whole of a shortest
+  // flight would multiply the energy of bodies that spin fast.
+  constexpr double most_turn = 0x1p-3;  // rad
+  const double turn =
+      options_.shortest_flight * std::max(norm(motion_a.angular_velocity), norm(motion_b.angular_velocity));
+  if (turn > most_turn) {
+    const double of_paths =
+        -dot(n, motion_b.path.acceleration(contact.time) - motion_a.path.acceleration(contact.time));
+    pressed = of_paths + most_turn / turn * (pressed - of_paths);
+  }
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
   for (const Motion* motion : {&motion_a, &motion_b}) {
@@ -235,11 +254,13 @@ FreeTurning Engine<Motion>::free_turning(BodyId id) const requires(turns<Motion>
           motion.angular_velocity / bodies_[slot].inverse_inertia};
 }
 
-/// Walls meet bounding balls, so they do not turn a body.
+/// Walls meet bounding balls, so they do not turn a body. One that has no room between two of them stands still along
+/// their axis from then on.
 template <class Motion>
 void Engine<Motion>::process_wall() requires(turns<Motion>) {
   const BodySlot slot = walls_.next_body();
   const Body& body = bodies_[slot];
+  const Walls& walls = *options_.walls;
   const int wall = walls_.next_wall();
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
@@ -248,17 +269,30 @@ void Engine<Motion>::process_wall() requires(turns<Motion>) {
   const double approach = path[1][axis] * out;
   double pressed = 0;
   if constexpr (Motion::degree >= 2) pressed = 2 * path[2][axis] * out;
-  path[1][axis] = -out * rebound(approach, pressed, std::min(body.restitution, options_.walls->restitution));
+  const double restitution = std::min(body.restitution, walls.restitution);
+  const double speed = rebound(approach, pressed, restitution);
+  const double room = walls.max[axis] - walls.min[axis] - 2 * body.bounding_radius;
+  const double size = path[0].cwiseAbs().maxCoeff() + body.bounding_radius;
+  const bool held = has_no_room(options_.zeno, room, speed, pressed, speed > restitution * approach, size);
+  if (held) {
+    for (std::size_t i = 1; i <= Motion::degree; ++i) path[i][axis] = 0;
+    ++counters_.rebounds_suppressed;
+  } else {
+    path[1][axis] = -out * speed;
+  }
   WallEvent event{bodies_.id_of(slot), wall, {.time = clock_.now}, bodies_[slot].user_data};
   event.contact.normal = Vector3d::Zero();  // not a unit vector times -1, whose zeros would be negative
   event.contact.normal[axis] = out;
   event.contact.point = path[0];
-  event.contact.point[axis] = out > 0 ? options_.walls->max[axis] : options_.walls->min[axis];
+  event.contact.point[axis] = out > 0 ? walls.max[axis] : walls.min[axis];
   ++counters_.wall_contacts;
   ++counters_.motion_updates;
   if (tumbling_.has(slot)) tumbling_.set_path(slot, motion.path);
   set_motion(slot, motion, false);
-  tell([&](Listener& listener) { listener.wall(world_, event); });
+  tell([&](Listener& listener) {
+    listener.wall(world_, event);
+    if (held) listener.rebound_suppressed_at_wall(world_, event);
+  });
 }
 
 /// Here and not in world.cpp, since clang 14 would instantiate it for other motions too.
