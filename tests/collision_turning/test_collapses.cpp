@@ -169,7 +169,7 @@ TEST_CASE("a box that is pinched does not hand blows to and fro without end", "[
     Scene scene;
     pinch(scene, e);
     const Vector3d before = scene.momentum();
-    run(scene, 0.125, 6000, 1e-9);
+    run(scene, 0.046875, 6000, 1e-9);
     CHECK(scene.log.passed == 0);
     CHECK((scene.momentum() - before).norm() < 1e-12);
   }

@@ -321,24 +321,28 @@ auto TurningMeshSearch<Degree, Side>::entered_touch(const View& view, const View
   return best;
 }
 
-/// A face of several triangles that lies on another face touches it with each. If the middle of all that they share
-/// approaches the two touch there, as hulls do. `flat`: the touches of faces on faces.
+/// A face of several triangles that lies on another face touches it with each, and with those beside it at its edges.
+/// If the middle of all that the faces share approaches, the two touch there, as hulls do. `flat`: the touches of faces
+/// on faces.
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::move_to_middle(TurningTouch& touch, const std::vector<TurningTouch>& flat,
                                                      double t) const {
   constexpr double cosine = 1 - 0x1p-40;  // of directions that are the same up to roundings
-  if (flat.size() < 2 || touch.area == 0) return;
+  const TurningTouch* first = nullptr;
+  int count = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double area = 0;
   for (const TurningTouch& other : flat) {
     if (dot(other.normal, touch.normal) < cosine) continue;
+    if (count++ == 0) first = &other;
     sum += other.area * other.middle;
     area += other.area;
   }
+  if (count == 0 || (count == 1 && touch.area > 0)) return;
   const Eigen::Vector3d middle = sum / area;
   const PointRates<Degree> rates(motion_a_, motion_b_, t);
   const double approach = detail::approach_at(rates, touch.normal, motion_a_.path.position(t) + middle);
-  if (approach > 0) touch.point = middle, touch.approach = approach;
+  if (approach > 0) touch = {middle, touch.normal, first->feature_a, first->feature_b, approach};
 }
 
 template <int Degree, class Side>

@@ -36,9 +36,9 @@ void archive_members(Archive& archive, Blow& blow) {
 /// resolved together. After more than ZenoPolicy::contacts they are however fast two bodies approach; and two that
 /// cannot be parted then, between bodies that close in, are let through each other.
 ///
-/// If this is larger, each collapse takes more contacts; 1 would take each pair of contacts within the interval for a
-/// collapse.
-inline constexpr std::uint64_t collapse_meetings = 4;
+/// If this is larger, each collapse takes more contacts; if it is less, heaps have more of them, whose contacts would
+/// end by themselves. Bodies that precess are not led back to their free rotations either after so many.
+inline constexpr std::uint64_t collapse_meetings = 16;
 /// They approach no faster than this times the greatest Blow::least. So only what is about a shortest flight is lost:
 /// chains of balls that strike each other fast are not concerned, however close their contacts follow each other.
 inline constexpr double collapse_speed = 2;
