@@ -34,8 +34,9 @@ enum class Response {
 /// is counted and reported, and a run always ends.
 ///
 /// In worlds of bodies that turn this does not make contacts last: WorldOptions::shortest_flight says how bodies come
-/// to rest there. Contacts of two that have both met others more than `contacts` times within `interval` lose no
-/// energy, and are without friction: so no cascade of contacts goes on without end.
+/// to rest there. Contacts within `interval` of bodies that have met others so often are resolved together, if they can
+/// be: as one impact without rebound (docs/turning.md, collapses), so that no cascade of contacts goes on without end;
+/// if nothing keeps two bodies apart, they are let pass.
 ///
 /// Meetings are counted by body and not by pair: a pair is forgotten when its bounding volumes part, which may happen
 /// at each bounce and at times that depend on the broad phase.

@@ -158,8 +158,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void put_back(const Parcel<Motion>& parcel);
   /// Other worlds have run to t: bodies have entered, pieces of scripts have begun. Returns the timers that have rung.
   std::vector<Timers::Image::One> note_passed(double t);
-  /// Forgets all but the bodies, until go_on().
-  void set_aside();
+  void set_aside();  ///< Forgets all but the bodies, until go_on().
   /// Goes on at t with the bodies as they are then.
   void go_on(double t, std::span<const Overlap> overlaps);
 
@@ -298,8 +297,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   void process_wall() requires(!turns<Motion>);
   void bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>);
   void take_up_bounce();
-  /// Bounces, rests, or gathers two bodies that have met `burst` times at nearly one time. Returns whether the Zeno
-  /// policy acted.
+  /// Of two bodies that have met others `burst` times at nearly one time. Returns whether the Zeno policy acted.
   bool respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(!turns<Motion>);
   bool strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) requires(!turns<Motion>);
   bool bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
@@ -322,6 +320,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   double rebound(double approach, double pressed, double restitution) const requires(turns<Motion>);
   void process_wall() requires(turns<Motion>);
   bool respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) requires(turns<Motion>);
+  bool rests_now(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>);
   // turning/turning_pieces.cpp: of bodies that precess
   void turn_on() requires(turns<Motion>);
   double left_alone_until(BodySlot slot) const requires(turns<Motion>);
@@ -333,6 +332,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   Motion met(BodySlot slot, double t) requires(turns<Motion>);
   TurningImpact<Motion> impact(BodySlot a, BodySlot b, const Contact& contact,
                                std::uint64_t burst) requires(turns<Motion>);
+  Collapse part_together(BodySlot a, BodySlot b, const Contact& contact, const TurningImpact<Motion>& hit,
+                         std::uint64_t burst) requires(turns<Motion>);  // turning/turning_collapse.cpp
   void turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
                  const Contact& contact) requires(turns<Motion>);
 
@@ -389,8 +390,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   double idle_until_ = -never;       ///< nothing is due before it; an edit resets it
   bool idle_for_ever_ = false;       ///< no event comes at all; an edit resets it
   double next_time_ = -never;        ///< the result of next_time(); -never if there is none
-  /// While a bounce off a wall is reported: the body, whose new motion the parts do not know yet, as it is often
-  /// removed.
+  /// While a bounce off a wall is reported: the body, which is often removed, so that no part has its new motion yet.
   BodySlot bounced_ = no_body;
   bool stepping_ = false;
   bool telling_ = false;        ///< a listener is being told, or has thrown

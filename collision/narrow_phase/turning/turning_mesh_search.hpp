@@ -240,6 +240,7 @@ class TurningMeshSearch {
     const PointRates<Degree> rates(motion_a_, motion_b_, view.time);
     return touch_of(pair, a_, leaves.a, b_, leaves.b, view, rates, motion_a_.path.position(view.time));
   }
+  void move_to_middle(TurningTouch& touch, const std::vector<TurningTouch>& flat, double t) const;
   std::optional<TurningTouch> entered_touch(const View& view, const View& then) const;
   double passed_over(const Pair& pair, const View& view, double horizon) const;
   /// In so short a time they do not get deeper by more than 2^-40 of their distances, if they do not approach.
@@ -320,16 +321,42 @@ auto TurningMeshSearch<Degree, Side>::entered_touch(const View& view, const View
   return best;
 }
 
+/// A face of several triangles that lies on another face touches it with each, and with those beside it at its edges.
+/// If the middle of all that the faces share approaches, the two touch there, as hulls do. `flat`: the touches of faces
+/// on faces.
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::move_to_middle(TurningTouch& touch, const std::vector<TurningTouch>& flat,
+                                                     double t) const {
+  constexpr double cosine = 1 - 0x1p-40;  // of directions that are the same up to roundings
+  const TurningTouch* first = nullptr;
+  int count = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double area = 0;
+  for (const TurningTouch& other : flat) {
+    if (dot(other.normal, touch.normal) < cosine) continue;
+    if (count++ == 0) first = &other;
+    sum += other.area * other.middle;
+    area += other.area;
+  }
+  if (count == 0 || (count == 1 && touch.area > 0)) return;
+  const Eigen::Vector3d middle = sum / area;
+  const PointRates<Degree> rates(motion_a_, motion_b_, t);
+  const double approach = detail::approach_at(rates, touch.normal, motion_a_.path.position(t) + middle);
+  if (approach > 0) touch = {middle, touch.normal, first->feature_a, first->feature_b, approach};
+}
+
 template <int Degree, class Side>
 TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
   TurningTouch best;
   NodePair of_best{};
+  std::vector<TurningTouch> flat;
   const View view = this->view(t);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
     const View then = this->view(when);
     find(then, [&](NodePair leaves, const Pair& pair) {
       const TurningTouch each = touch(leaves, pair, view);
+      if (each.area > 0) flat.push_back(each);
       if (!any || each.approach > best.approach || (each.approach == best.approach && leaves < of_best)) {
         best = each, of_best = leaves;
       }
@@ -341,7 +368,10 @@ TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
         return *entered;
       }
     }
-    if (any) return best;
+    if (any) {
+      move_to_middle(best, flat, t);
+      return best;
+    }
   }
   for (double margin = 0x1p-40 * (a_.radius(0) + norm(view.way.value));; margin *= 64) {
     double least = never;

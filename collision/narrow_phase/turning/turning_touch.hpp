@@ -29,6 +29,8 @@ struct TurningTouch {
   Eigen::Vector3d normal;  ///< unit, from a to b
   Feature feature_a, feature_b;
   double approach;  ///< how fast they approach there, less the effect of roundings; not above zero if they do not
+  double area = 0;  ///< of what they share, where a face lies on a face
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< of that: its centroid
 };
 
 namespace detail {
@@ -94,6 +96,18 @@ inline FarthestPoints farthest_points(const BoxOfPair&, std::uint32_t, const std
   return result;
 }
 
+/// Notes which area two faces share, and its centroid.
+inline void note_area(TurningTouch& touch, const std::vector<Eigen::Vector3d>& corners) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 2; i < corners.size(); ++i) {
+    const Eigen::Vector3d &p = corners[0], &q = corners[i - 1], &r = corners[i];
+    const double area = norm(cross(q - p, r - p)) / 2;
+    touch.area += area;
+    sum += area / 3 * (p + q + r);
+  }
+  if (touch.area > 0) touch.middle = sum / touch.area;
+}
+
 template <int Degree>
 double approach_at(const PointRates<Degree>& rates, const Eigen::Vector3d& normal, const Eigen::Vector3d& x) {
   return -dot(normal, rates.velocity(x)) - rates.noise(x);
@@ -134,6 +148,9 @@ TurningTouch touch_of(const TurningHulls<Degree, HullB>& pair, const MeshOfPair&
     const auto of_b = detail::farthest_points(b, leaf_b, seen.b, -normal);
     TurningTouch touch{patch_centre(of_a.points, of_b.points, seen.way, normal), normal, of_a.feature, of_b.feature, 0};
     touch.approach = detail::approach_at(rates, normal, origin + touch.point);
+    if (of_a.points.size() > 2 && of_b.points.size() > 2) {
+      detail::note_area(touch, patch_corners(of_a.points, of_b.points, seen.way, normal));
+    }
     if (touch.approach > 0) return touch;
     for (const Eigen::Vector3d& x : patch_corners(of_a.points, of_b.points, seen.way, normal)) {
       const double approach = detail::approach_at(rates, normal, origin + x);

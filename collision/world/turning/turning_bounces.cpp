@@ -5,6 +5,7 @@
 #include "collision/vectors.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
+#include "collision/world/turning/collapse.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -98,8 +99,10 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   for (const Motion* motion : {&motion_a, &motion_b}) {
     pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
   }
-  // With losses of energy three bodies in a line can make infinitely many contacts. So after too many contacts at one
-  // instant nothing is lost any more.
+  result.speed = approach;
+  result.least = 0.5 * options_.shortest_flight * std::max(pressed, 0.0);
+  // Where the contacts of one instant are not resolved together (collapse.hpp), after too many nothing is lost any
+  // more: with losses of energy three bodies in a line can make infinitely many.
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
@@ -163,7 +166,15 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
     const bool woke = resting_.strike(a, hit.turn_a, b, hit.turn_b, hit.impulse, mobility_of);
     if (woke) hit = impact(a, b, contact, burst);
   }
-  auto& [motion_a, motion_b, impulse, turn_a, turn_b, approach] = hit;
+  if (!may_wake && hit.approach) {
+    const Collapse collapse = part_together(a, b, contact, hit, burst);
+    if (collapse == Collapse::stuck) {  // They still approach, so they are let through.
+      ++counters_.rebounds_suppressed;
+      return true;
+    }
+    if (collapse == Collapse::parted) return rests_now(a, b, contact);
+  }
+  auto& [motion_a, motion_b, impulse, turn_a, turn_b, speed, least, approach] = hit;
   const auto both = {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}};
   if (!approach) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);
@@ -186,7 +197,12 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
     ++counters_.motion_updates;
     set_motion(slot, motion, false);
   }
-  if (bends(a, b)) return false;  // Nothing rests on what bends.
+  return !bends(a, b) && rests_now(a, b, contact);  // Nothing rests on what bends.
+}
+
+/// Whether two bodies that have met come to rest.
+template <class Motion>
+bool Engine<Motion>::rests_now(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
   const bool rests = resting_.comes_to_rest(a, b, contact);
   counters_.rebounds_suppressed += rests;
   return rests;
@@ -224,10 +240,10 @@ void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion&
   look(a, back_a, piece_a), look(b, back_b, piece_b);
   const double free = parting(motion_a, motion_b);
   const double led = parting(back_a, back_b);
-  // If two neighbours led a body back in different ways it could go to and fro endlessly. So after many contacts at one
+  // If two neighbours led a body back in different ways it could go to and fro endlessly. So after some contacts at one
   // instant nothing is led back.
   const auto often = [&](BodySlot slot) {
-    return bodies_.fixed(slot) || bodies_[slot].meetings > options_.zeno.contacts;
+    return bodies_.fixed(slot) || bodies_[slot].meetings >= detail::collapse_meetings;
   };
   const bool goes_on = often(a) && often(b);
   const bool whole = !goes_on && free > 0 && led >= free / 2;

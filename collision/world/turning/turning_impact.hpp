@@ -12,7 +12,16 @@ struct TurningImpact {
   Eigen::Vector3d impulse = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_a = Eigen::Vector3d::Zero();
   Eigen::Vector3d turn_b = Eigen::Vector3d::Zero();
+  double speed = 0;       ///< with which they approach
+  double least = 0;       ///< with which they part for a shortest flight
   bool approach = false;  ///< at the contact; if not they move as before
+};
+
+/// Whether a contact is one of a collapse (turning/collapse.hpp), and what has become of that.
+enum class Collapse {
+  none,
+  parted,  ///< all of its bodies part
+  stuck    ///< nothing parts them: they are between bodies that close in
 };
 
 }  // namespace kds::collision

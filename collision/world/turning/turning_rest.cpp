@@ -28,7 +28,7 @@ typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlo
 /// Member::looked and Member::ignored of a body matter only while it is calm or rests, so they are not asked.
 template <class Motion>
 bool TurningRest<Motion>::remembers_nothing() const {
-  return pairs_.empty() && woken_.empty() &&
+  return pairs_.empty() && woken_.empty() && !blows_.any(clock_.now) &&
          std::all_of(of_.begin(), of_.end(), [](const Member& member) { return member.since == never; });
 }
 
@@ -109,7 +109,15 @@ bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
 }
 
 template <class Motion>
+std::vector<detail::Blow> TurningRest<Motion>::note_blow(const detail::Blow& blow) {
+  if (bodies_.numbered()) throw RestsInPart();
+  blows_.note(blow, same_place * scale({blow.a, blow.b}).size);
+  return blows_.of_last([this](BodySlot slot) { return !bodies_.fixed(slot) && !carries(slot); });
+}
+
+template <class Motion>
 void TurningRest<Motion>::drop_all(BodySlot slot) {
+  blows_.forget(slot);
   if (slot >= of_.size()) return;
   if (carries(slot)) wake(slot);
   const std::vector<BodySlot> others = of_[slot].others;  // which leave it when they wake
@@ -123,6 +131,7 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
 
 template <class Motion>
 bool TurningRest<Motion>::drop_filtered(BodySlot slot) {
+  blows_.forget(slot);
   if (slot >= of_.size()) return false;
   const auto& others = of_[slot].others;
   const auto over = [&](BodySlot other) { return !bodies_.may_collide(slot, other); };

@@ -9,6 +9,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contact.hpp"
+#include "collision/world/turning/collapse.hpp"
 #include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -88,7 +89,11 @@ class TurningRest {
   using Listener = RestingListener<Motion>;
 
   TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
-      : bodies_(bodies), flight_(options.shortest_flight), clock_(clock), listener_(listener) {}
+      : bodies_(bodies),
+        flight_(options.shortest_flight),
+        clock_(clock),
+        listener_(listener),
+        blows_(options.zeno.interval) {}
   TurningRest(const TurningRest&) = delete;
   TurningRest& operator=(const TurningRest&) = delete;
 
@@ -117,6 +122,10 @@ class TurningRest {
   /// if not, the bodies that it moves wake, and those that they have held. Returns whether any wakes.
   bool strike(BodySlot a, const Eigen::Vector3d& turn_a, BodySlot b, const Eigen::Vector3d& turn_b,
               const Eigen::Vector3d& impulse, const MobilityOf& mobility);
+
+  /// Two bodies strike each other that have both met others often within ZenoPolicy::interval. Returns the contacts of
+  /// that time that have to be resolved together with this one, which is the first of them (collapse.hpp).
+  std::vector<detail::Blow> note_blow(const detail::Blow& blow);
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
@@ -163,12 +172,14 @@ class TurningRest {
     std::vector<Ignored> ignored;
     std::vector<Eigen::Vector3d> carried_at;  ///< by body
     std::vector<BodySlot> woken;
+    std::vector<detail::Blow> blows;  ///< in the order of their times
 
     template <class Archive>
     void archive(Archive& archive) {
       archive(since, looked, rests, ignored, woken);
       archive.each(carried_at, [&](Eigen::Vector3d& velocity) { image::vector(archive, velocity); });
       archive.each(pairs, [&](One& one) { archive(one.a, one.b, one.pair); });
+      archive.each(blows, [&](detail::Blow& blow) { archive(blow); });
     }
     /// Throws std::runtime_error, naming what is wrong.
     void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
@@ -242,6 +253,7 @@ class TurningRest {
   std::vector<BodySlot> woken_;
   std::size_t resting_ = 0;  ///< pairs that rest
   std::uint64_t walks_ = 0;
+  detail::Blows blows_;
 };
 
 #ifdef KDS_TURNING

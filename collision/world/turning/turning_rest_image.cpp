@@ -23,6 +23,7 @@ typename TurningRest<Motion>::Image TurningRest<Motion>::image() const {
     image.carried_at.push_back(member.others.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : member.carried_at);
   }
   image.woken = woken_;
+  image.blows = blows_.image(clock_.now);
   return image;
 }
 
@@ -43,6 +44,7 @@ void TurningRest<Motion>::become(const Image& image) {
     resting_ += one.pair.rests;
   }
   woken_ = image.woken;
+  blows_.become(image.blows);
 }
 
 template <class Motion>
@@ -79,6 +81,14 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
   }
   for (std::size_t i = 0; i < woken.size(); ++i) {
     image::require(bodies.entered(woken[i]), "woken", i, "is no body in the world");
+  }
+  for (std::size_t i = 0; i < blows.size(); ++i) {
+    const auto& [a, b, point, normal, time, least] = blows[i];
+    const auto need = [i](bool right, const char* what) { image::require(right, "blows", i, what); };
+    need(a < b && bodies.entered(a) && bodies.entered(b), "is not of two bodies in the world");
+    need(point.allFinite() && std::abs(normal.norm() - 1) <= unit_rounding, "its contact is not one");
+    need(least >= 0 && least < never, "its speed is not >= 0");
+    need(image::is_past(time, now) && (i == 0 || blows[i - 1].time <= time), "is out of order");
   }
 }
 
