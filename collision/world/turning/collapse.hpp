@@ -1,7 +1,7 @@
 // Blows that are handed on between bodies in ever shorter flights.
 #pragma once
 
-#include "collision/body_motion.hpp"
+#include "collision/body_id.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/image_tools.hpp"
 
