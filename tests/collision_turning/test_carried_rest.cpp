@@ -126,7 +126,7 @@ TEST_CASE("a cart that accelerates or turns lets nothing rest", "[rest]") {
   }
   world.add_body(cart);
   add_stack(world);
-  world.advance_to(2);
+  world.advance_to(0.625);
   CHECK(log.rested == 0);
   CHECK(log.passed == 0);
   CHECK(place(world, 3)[2] > 1.2);  // It is carried all the same, in shortest flights.
