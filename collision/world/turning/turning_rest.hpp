@@ -130,7 +130,8 @@ class TurningRest {
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
   void forget(BodySlot slot) { drop_all(slot); }
-  /// The same if it has touched a body that it may not collide with any more; otherwise does nothing and returns false.
+  /// The same if it has touched a body that it may not collide with any more; otherwise forgets only its contacts of a
+  /// collapse, and returns false.
   bool drop_filtered(BodySlot slot);
   /// The bodies that a body rests on, and those that rest on it.
   std::vector<BodySlot> partners(BodySlot slot) const;
