@@ -37,6 +37,12 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;
   void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void prefetch(BodySlot id) const override {
+    if (grid_) grid_->prefetch(id);
+  }
+  void prefetch_surroundings(BodySlot id) const override {
+    if (grid_) grid_->prefetch_surroundings(id);
+  }
   bool advance(double limit, PairListener& listener) override {
     return grid_ ? grid_->advance(limit, listener) : few_.advance(limit, listener);
   }

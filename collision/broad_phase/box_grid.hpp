@@ -137,6 +137,10 @@ class BoxGrid {
     restart(natives_.room());
   }
 
+  /// Fetches a box for a later put(); and once that is there, cells near it. Precondition: id < end().
+  void prefetch(Id id) const { __builtin_prefetch(&items_[id], 1); }
+  void prefetch_cells(Id id) const;
+
   /// Whether two boxes overlap, of whatever kinds. Precondition: both are here.
   bool overlap(Id a, Id b) const {
     return overlaps_with(items_[a]).with(items_[b].bounds, items_[b].rounding) != 0 &&

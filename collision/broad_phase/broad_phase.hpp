@@ -30,7 +30,13 @@ class PairListener {
   /// If it lists the pairs of each body: calls visit(other) for each that has been reported as begun and not as ended,
   /// in any order, and returns true. Broad phases that keep no such lists then need no search for them.
   virtual bool visit_pairs(BodySlot, SlotVisitor) const { return false; }
+  /// A hint: the box and the pairs of this body will soon be asked for.
+  virtual void prefetch(BodySlot) const {}
 };
+
+/// From so many bodies on a world exceeds the caches, most of what an event needs is in none, and it pays to fetch it
+/// ahead.
+inline constexpr std::size_t more_than_caches = 4096;
 
 /// Reports, at the right times and in order, which pairs of bodies have to be tested.
 ///
@@ -81,6 +87,10 @@ class BroadPhase {
 
   /// Gives a body another box, also at another place (a jump). Pairs that begin and end are reported.
   virtual void update(BodySlot body, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
+
+  /// Hints: a body will soon be updated. The second is given later, when what the first has fetched is there.
+  virtual void prefetch(BodySlot /*body*/) const {}
+  virtual void prefetch_surroundings(BodySlot /*body*/) const {}
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
   /// all are done. Precondition: limit is finite.

@@ -138,11 +138,22 @@ void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, dou
   renew(id, box, sweep, present, now, listener);
 }
 
+/// What the renewals of the next two days need.
+template <int Degree>
+void KineticGrid<Degree>::prefetch_coming(const PairListener& listener) const {
+  expiry_.look_ahead([this](BodySlot id) { prefetch_surroundings(id); },
+                     [this, &listener](BodySlot id) {
+                       prefetch(id);
+                       listener.prefetch(id);
+                     });
+}
+
 template <int Degree>
 bool KineticGrid<Degree>::advance(double limit, PairListener& listener) {
   while (!expiry_.empty()) {
     const auto [time, id] = expiry_.top();
     if (time > limit) return false;
+    if (size() > more_than_caches) prefetch_coming(listener);
     if (bodies_[id].expiry > time) {
       set_expiry(id, bodies_[id].expiry, time);
       continue;

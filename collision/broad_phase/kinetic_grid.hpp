@@ -57,6 +57,15 @@ class KineticGrid final : public BroadPhase<Degree> {
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;
   void update(BodySlot id, const KineticBox<Degree>& box, double now, PairListener& listener) override;
+  void prefetch(BodySlot id) const override {
+    if (id >= fat_boxes_.end()) return;
+    __builtin_prefetch(&bodies_[id], 1);
+    fat_boxes_.prefetch(id);
+    expiry_.prefetch(id);
+  }
+  void prefetch_surroundings(BodySlot id) const override {
+    if (id < fat_boxes_.end()) fat_boxes_.prefetch_cells(id);
+  }
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;
@@ -150,6 +159,7 @@ class KineticGrid final : public BroadPhase<Degree> {
   bool renew(BodySlot id, const KineticBox<Degree>& kinetic, const BoxSweep<Degree>& sweep, const StaticBox& present,
              double now, PairListener& listener);
   void set_expiry(BodySlot id, double expiry, double now);
+  void prefetch_coming(const PairListener& listener) const;
   double travel_factor(std::uint32_t begun) const;
   bool much_in_vain(const Filter& filter) const {
     constexpr std::uint64_t little = 256;

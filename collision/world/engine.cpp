@@ -179,6 +179,21 @@ bool Engine<Motion>::process(Volumes<Motion>&) {
   return volumes_.from_caller(slot);
 }
 
+/// What contacts of the next two days need.
+template <class Motion>
+void Engine<Motion>::prefetch_coming() const {
+  pairs_.look_ahead(
+      [this](BodySlot slot) {
+        pairs_.prefetch_list(slot);
+        broad_phase_->prefetch_surroundings(slot);
+      },
+      [this](BodySlot slot) {
+        pairs_.prefetch(slot);
+        broad_phase_->prefetch(slot);
+        walls_.prefetch(slot);
+      });
+}
+
 template <class Motion>
 bool Engine<Motion>::next_event(double limit, Search search) {
   const bool looks = search == Search::looks;
@@ -207,6 +222,7 @@ bool Engine<Motion>::next_event(double limit, Search search) {
       if (late()) return true;
       continue;
     }
+    if (bodies_.size() > more_than_caches) prefetch_coming();
     const auto due = parts.next();
     // Pending work is of this instant: all that happens at it has to be known before any of it is reported.
     const bool reports = !reports_.empty();

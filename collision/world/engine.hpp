@@ -196,6 +196,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   /// Whether the search for the next event processes it, or stops before it.
   enum class Search { makes, looks };
   bool next_event(double limit, Search search = Search::makes);
+  void prefetch_coming() const;
   bool guarded_event(double limit, Search search);
   std::size_t part_of_work() const;
   bool late() const { return deadline_ && WallClock::now() >= *deadline_; }

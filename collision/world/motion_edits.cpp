@@ -125,7 +125,7 @@ template <class Motion>
 void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
   const Stopwatch watch(profile(), Work::update);
   bodies_.move(slot, motion);
-  pairs_.prefetch(slot);  // in parallel with the work of the broad phase
+  pairs_.prefetch_pairs(slot);  // in parallel with the work of the broad phase
   if (jumped) pairs_.set_begin(Begin::jumping);
   if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
   pairs_.set_begin(Begin::moving);

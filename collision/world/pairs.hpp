@@ -117,9 +117,15 @@ class Pairs final : public PairListener {
   /// The same of a pair that the caller has begun or ceased to ignore.
   void ignoring_changed(BodySlot a, BodySlot b);
 
-  /// A body has another motion, or has jumped. prefetch() may be called before.
+  /// A body has another motion, or has jumped. prefetch_pairs() may be called before.
   void motion_changed(BodySlot id, bool jumped);
-  void prefetch(BodySlot id) const;
+  void prefetch_pairs(BodySlot id) const;
+  /// Calls far(slot) for bodies that may soon have a contact, and near(slot) when that comes sooner.
+  template <class Near, class Far>
+  void look_ahead(const Near& near, const Far& far) const;
+  /// Hints for these, and for boxes that will soon be renewed: the second is given later.
+  void prefetch(BodySlot id) const override;
+  void prefetch_list(BodySlot id) const;
   /// A body goes on along its path and turns otherwise. Pairs with those for which waits(other) are left out.
   template <class Waits>
   void turned(BodySlot id, const Waits& waits) {
@@ -291,7 +297,30 @@ inline void Pairs<Motion>::mark_dirty(Slot slot) {
 }
 
 template <class Motion>
+template <class Near, class Far>
+inline void Pairs<Motion>::look_ahead(const Near& near, const Far& far) const {
+  const auto with_both = [this](const auto& visit) {
+    return [this, &visit](Slot slot) {
+      visit(pairs_[slot].a);
+      visit(pairs_[slot].b);
+    };
+  };
+  contacts_.look_ahead(with_both(near), with_both(far), [this](Slot slot) { __builtin_prefetch(&pairs_[slot], 1); });
+}
+
+template <class Motion>
 inline void Pairs<Motion>::prefetch(BodySlot id) const {
+  bodies_.prefetch(id);
+  if (id < of_.size()) __builtin_prefetch(&of_[id]);
+}
+
+template <class Motion>
+inline void Pairs<Motion>::prefetch_list(BodySlot id) const {
+  if (const auto list = links(id); !list.empty()) __builtin_prefetch(list.data());
+}
+
+template <class Motion>
+inline void Pairs<Motion>::prefetch_pairs(BodySlot id) const {
   for (const Link& link : links(id)) {
     __builtin_prefetch(&pairs_[link.slot], 1);
     __builtin_prefetch(&bodies_.mover(link.other));

@@ -36,6 +36,10 @@ class WallTimes {
   void schedule(std::span<const Entry> entries);
   void schedule(BodySlot slot);
   void remove(BodySlot slot);
+  /// A hint: the body will soon have another motion.
+  void prefetch(BodySlot slot) const {
+    if (slot < times_.slots()) times_.prefetch(slot);
+  }
   void reserve(std::size_t bodies);
 
   /// A time up to which no body reaches a wall.

@@ -49,6 +49,50 @@ TEST_CASE("a calendar tells of all events up to a time, and rearranges nothing",
   }
 }
 
+TEST_CASE("a calendar tells day by day of what comes, and is the same after it", "[events]") {
+  std::size_t seen_first = 0, seen_second = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    Random random(seed);
+    const std::size_t slots = 1 + random.below(300);
+    CalendarQueue<> queue, unobserved;
+    queue.resize(slots);
+    unobserved.resize(slots);
+    double now = 0;
+    for (int i = 0; i < 600; ++i) {
+      const auto slot = static_cast<Slot>(random.below(slots));
+      if (random.one_in(3)) {
+        REQUIRE(queue.empty() == unobserved.empty());
+        if (queue.empty()) continue;
+        REQUIRE(queue.top().slot == unobserved.top().slot);
+        now = queue.top().time;
+        queue.pop();
+        unobserved.pop();
+      } else {
+        const double time = now + std::ldexp(random.unit(), random.integer(-8, 8));
+        queue.set(slot, time);
+        unobserved.set(slot, time);
+      }
+      // Of two days the first is over before the second begins, and none is the present one.
+      double last_of_first = now, first_of_second = 1e300;
+      const double first = queue.empty() ? now : queue.top().time;
+      queue.look_ahead(
+          [&](Slot each) {
+            REQUIRE(queue.time(each) >= first);
+            last_of_first = std::max(last_of_first, queue.time(each));
+            ++seen_first;
+          },
+          [&](Slot each) {
+            first_of_second = std::min(first_of_second, queue.time(each));
+            ++seen_second;
+          });
+      REQUIRE(last_of_first < first_of_second);
+    }
+  }
+  CHECK(seen_first > 1000);
+  CHECK(seen_second > 1000);
+}
+
 TEST_CASE("few events among many slots are in order, also where slots take over from others", "[events]") {
   const std::uint64_t seed = 21;
   CAPTURE(seed);
