@@ -40,9 +40,6 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   void prefetch(BodySlot id) const override {
     if (grid_) grid_->prefetch(id);
   }
-  void prefetch_surroundings(BodySlot id) const override {
-    if (grid_) grid_->prefetch_surroundings(id);
-  }
   bool advance(double limit, PairListener& listener) override {
     return grid_ ? grid_->advance(limit, listener) : few_.advance(limit, listener);
   }

@@ -227,22 +227,6 @@ void BoxGrid::remove(Id id, Changes& changes, bool alone) {
   items_[id].level = absent;
 }
 
-/// The cells of its own level that it is searched in most often: those next to the corner that it is registered by.
-void BoxGrid::prefetch_cells(Id id) const {
-  const Item& item = items_[id];
-  const auto has_level = [&](const Level& level) { return level.exponent == item.level; };
-  const auto level = std::find_if(levels_.begin(), levels_.end(), has_level);
-  if (level == levels_.end()) return;
-  const Ends ends(item.bounds, level->scale);
-  const std::uint64_t family = level->family_of(item.kind);
-  for (const std::int64_t z : {-1, 0}) {
-    for (const std::int64_t y : {-1, 0}) {
-      const std::size_t row = natives_.row(family, ends.cell(1) + y, ends.cell(2) + z);
-      for (const std::int64_t x : {-1, 0}) natives_.fetch(natives_.place(row, ends.cell(0) + x));
-    }
-  }
-}
-
 /// Replaces a box by one of the same level: if they are near each other, one search finds all boxes that overlap
 /// either.
 void BoxGrid::move(Id id, const Item& to, Changes& changes, bool alone) {

@@ -137,9 +137,8 @@ class BoxGrid {
     restart(natives_.room());
   }
 
-  /// Fetches a box for a later put(); and once that is there, cells near it. Precondition: id < end().
+  /// Fetches a box for a later put(). Precondition: id < end().
   void prefetch(Id id) const { __builtin_prefetch(&items_[id], 1); }
-  void prefetch_cells(Id id) const;
 
   /// Whether two boxes overlap, of whatever kinds. Precondition: both are here.
   bool overlap(Id a, Id b) const {

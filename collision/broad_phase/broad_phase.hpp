@@ -88,9 +88,8 @@ class BroadPhase {
   /// Gives a body another box, also at another place (a jump). Pairs that begin and end are reported.
   virtual void update(BodySlot body, const KineticBox<Degree>& box, double now, PairListener& listener) = 0;
 
-  /// Hints: a body will soon be updated. The second is given later, when what the first has fetched is there.
+  /// A hint: a body will soon be updated.
   virtual void prefetch(BodySlot /*body*/) const {}
-  virtual void prefetch_surroundings(BodySlot /*body*/) const {}
 
   /// Processes events not later than `limit` and returns true right after the first that reported a pair; false when
   /// all are done. Precondition: limit is finite.

@@ -138,14 +138,14 @@ void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, dou
   renew(id, box, sweep, present, now, listener);
 }
 
-/// What the renewals of the next two days need.
+/// What the renewals of the day after the next need.
 template <int Degree>
 void KineticGrid<Degree>::prefetch_coming(const PairListener& listener) const {
-  expiry_.look_ahead([this](BodySlot id) { prefetch_surroundings(id); },
-                     [this, &listener](BodySlot id) {
-                       prefetch(id);
-                       listener.prefetch(id);
-                     });
+  const auto of_next_day = [](BodySlot) {};
+  expiry_.look_ahead(of_next_day, [this, &listener](BodySlot id) {
+    prefetch(id);
+    listener.prefetch(id);
+  });
 }
 
 template <int Degree>

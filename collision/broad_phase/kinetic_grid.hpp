@@ -63,9 +63,6 @@ class KineticGrid final : public BroadPhase<Degree> {
     fat_boxes_.prefetch(id);
     expiry_.prefetch(id);
   }
-  void prefetch_surroundings(BodySlot id) const override {
-    if (id < fat_boxes_.end()) fat_boxes_.prefetch_cells(id);
-  }
   bool advance(double limit, PairListener& listener) override;
   double next_time() const override { return expiry_.empty() ? never : expiry_.top().time; }
   void extend_horizon(double now, double horizon) override;

@@ -182,16 +182,12 @@ bool Engine<Motion>::process(Volumes<Motion>&) {
 /// What contacts of the next two days need.
 template <class Motion>
 void Engine<Motion>::prefetch_coming() const {
-  pairs_.look_ahead(
-      [this](BodySlot slot) {
-        pairs_.prefetch_list(slot);
-        broad_phase_->prefetch_surroundings(slot);
-      },
-      [this](BodySlot slot) {
-        pairs_.prefetch(slot);
-        broad_phase_->prefetch(slot);
-        walls_.prefetch(slot);
-      });
+  pairs_.look_ahead([this](BodySlot slot) { pairs_.prefetch_list(slot); },
+                    [this](BodySlot slot) {
+                      pairs_.prefetch(slot);
+                      broad_phase_->prefetch(slot);
+                      walls_.prefetch(slot);
+                    });
 }
 
 template <class Motion>
