@@ -4,6 +4,7 @@
 #include "collision/body_description.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/free_turning.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/surface_rate.hpp"
 #include "collision/profile.hpp"
