@@ -7,15 +7,15 @@
 #include <Eigen/Core>
 
 // The parts of the module are not the same in other versions. All of those are included here on which the code of
-// quaternions depends, the vector instructions too: so it is the same wherever Eigen/Geometry is included after this.
-#if EIGEN_WORLD_VERSION == 3 && EIGEN_MAJOR_VERSION == 4
+// quaternions depends, the vector instructions too, in its order: so it is the same where Eigen/Geometry comes after.
+#if !EIGEN_VERSION_AT_LEAST(3, 4, 50)
 #include <Eigen/src/Core/util/DisableStupidWarnings.h>
-// clang-format off: each part uses those before it
-#include <Eigen/src/Geometry/AngleAxis.h>
-#include <Eigen/src/Geometry/EulerAngles.h>
+// clang-format off
 #include <Eigen/src/Geometry/OrthoMethods.h>
-#include <Eigen/src/Geometry/Quaternion.h>
+#include <Eigen/src/Geometry/EulerAngles.h>
 #include <Eigen/src/Geometry/RotationBase.h>
+#include <Eigen/src/Geometry/Quaternion.h>
+#include <Eigen/src/Geometry/AngleAxis.h>
 #if defined(EIGEN_VECTORIZE_SSE) || defined(EIGEN_VECTORIZE_NEON)
 #include <Eigen/src/Geometry/arch/Geometry_SIMD.h>
 #endif
