@@ -69,7 +69,7 @@ class Bending(unittest.TestCase):
     def test_a_simulator_gives_the_steps_of_a_whole_script(self):
         times, heights = [0, 0.5, 1, 1.5, 2], [0, 0.6, 0.9, 1.7, 1.8]
         whole, _, _ = self.world_with_sheet(times, heights)
-        in_steps, sheet, _ = self.world_with_sheet(0, (0,))
+        in_steps, sheet, _ = self.world_with_sheet([0], [0])
         for time, height in zip(times[1:], heights[1:]):
             in_steps.update_vertices(sheet, time, raised(height)[0])
             if time < 2:
