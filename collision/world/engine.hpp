@@ -8,7 +8,6 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/narrow_phase/surface_rate.hpp"
 #include "collision/profile.hpp"
-#include "collision/response/free_rotation.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world/bodies.hpp"
