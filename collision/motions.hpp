@@ -6,8 +6,10 @@
 #pragma once
 
 #include "certificates/point_motion.hpp"
-#include "certificates/turning/rigid_motion.hpp"
 #include "collision/degrees.hpp"
+#ifdef KDS_TURNING
+#include "certificates/turning/rigid_motion.hpp"
+#endif
 
 // KDS_FOR_EACH_MOTION(instantiate), in a .cpp: instantiate(motion) for the motions of the library that is compiled.
 // KDS_FOR_EACH_PATH(instantiate): the same for those of bodies that keep their orientation.

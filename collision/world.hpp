@@ -6,10 +6,11 @@
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/body_visitor.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
+#include "collision/free_turning.hpp"
+#include "collision/fwd.hpp"
 #include "collision/motions.hpp"
 #include "collision/profile.hpp"
-#include "collision/response/free_rotation.hpp"
-#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/mesh_keyframe.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
@@ -56,7 +57,8 @@ struct EngineOf;
 /// id and says which of the two it is (in resting() and touching(), for either id).
 template <class BodyMotionType>
 class BasicWorld final {
-  static_assert(BodyMotion<BodyMotionType>, "World: bodies move as body_motion.hpp says");
+  static_assert(BodyMotion<BodyMotionType>,
+                "World: bodies move as body_motion.hpp says, and those that turn want kds::collision_turning");
   static_assert(BodyMotionType::degree >= 1 && BodyMotionType::degree <= KDS_GREATEST_DEGREE,
                 "World: bodies move on lines (degree 1) or parabolas (degree 2), and with kds::collision_splines on "
                 "curves of degree 3 to 5");
@@ -84,9 +86,9 @@ class BasicWorld final {
   /// Cheapest when many are added between two steps.
   BodyId add_body(const Description& description);
 
-  /// Makes room for this many bodies in all, in the broad phase too, at once: for a quarter of a microsecond a body.
-  /// Never needed, but saves time and memory where many are added, and the long steps of advance_for() in which tables
-  /// grow; not to be called for each few of many. Changes no event. Throws std::length_error for more than there are
+  /// Makes room for this many bodies in all, and as many pairs, at once: for a quarter of a microsecond a body. Never
+  /// needed, but saves time and memory where many are added, and the long steps of advance_for() in which tables grow;
+  /// not to be called for each few of many. Changes no event. Throws std::length_error for more than there are
   /// slots.
   void reserve(std::size_t bodies);
 
@@ -116,7 +118,7 @@ class BasicWorld final {
   /// Nothing jumps, and nothing in the past changes. The motion of the body goes on as it was. Throws
   /// std::invalid_argument for a body that does not bend, and, naming the keyframe, unless each is later than now() and
   /// than the one before, and has a position for each vertex, finite and in range.
-  void update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes);
+  void update_vertices(BodyId id, std::vector<MeshKeyframe> keyframes);
 
   /// Gives a body another mass; the inertia of one that turns changes by the same factor, and its motion does not
   /// change. Throws std::invalid_argument for a body that is fixed, and for a mass that add_body() would not take.
@@ -155,7 +157,7 @@ class BasicWorld final {
   /// Not divided, so that they may exceed the budget, are a call of a listener, a heap that comes to rest, predictions
   /// beyond the end of a window, pieces that start at one time and are not the first of their bodies, the growth of a
   /// table and the turn of a queue, which take some 0.2 us a body in the world. With reserve(), before bodies are
-  /// added, and the default broad phase the tables of bodies do not grow, only the list of pairs does. The methods
+  /// added, and the default broad phase no table grows but the queue, if pairs are not more than bodies. The methods
   /// `sap`, `kinetic_sap` and `all_pairs` take time in proportion to the bodies for each small part that enters
   /// (figures in docs/benchmarks.md). Throws as advance_to() does, and std::invalid_argument for a budget that is
   /// negative or not a number.

@@ -2,10 +2,13 @@
 #pragma once
 
 #include "collision/body_description.hpp"
+#include "collision/free_turning.hpp"
+#include "collision/profile.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/hit.hpp"
 #include "collision/queries/near_pairs.hpp"
 #include "collision/queries/nearest.hpp"
+#include "collision/shapes/mesh_keyframe.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_listener.hpp"
 #include "collision/world_options.hpp"
@@ -76,6 +79,7 @@ class AnyWorld : public AnyBodies {
   using AnyBodies::add_body;
   virtual BodyId add_body(const kds::io::SceneBody& body) = 0;
   virtual void append_motion(BodyId id, const std::vector<Motion>& pieces) = 0;
+  virtual void update_vertices(BodyId id, std::vector<kds::collision::MeshKeyframe> keyframes) = 0;
   // All or none: a value for each body.
   virtual void set_masses(const std::vector<BodyId>& ids, const double* masses) = 0;
   virtual void ignore_pair(BodyId a, BodyId b, bool ignored) = 0;
@@ -88,6 +92,10 @@ class AnyWorld : public AnyBodies {
   virtual double next_time() const = 0;
 
   virtual kds::collision::Shape shape(BodyId id) const = 0;
+  /// Of a mesh that bends, at now(); std::invalid_argument for other bodies.
+  virtual std::vector<Eigen::Vector3d> vertices(BodyId id) const = 0;
+  /// std::invalid_argument where bodies do not turn, too.
+  virtual kds::collision::FreeTurning free_turning(BodyId id) const = 0;
   virtual double mass(BodyId id) const = 0;
   virtual bool fixed(BodyId id) const = 0;
   virtual bool sensor(BodyId id) const = 0;
@@ -101,6 +109,7 @@ class AnyWorld : public AnyBodies {
   virtual bool resting_at_wall(BodyId a, int wall) const = 0;
   virtual kds::collision::WorldCounters counters() const = 0;
   virtual std::string_view broad_phase() const = 0;
+  virtual kds::collision::Profile profile() const = 0;
 
   /// All, in order of their slots.
   virtual std::vector<BodyId> bodies() const = 0;

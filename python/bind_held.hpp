@@ -47,6 +47,7 @@ inline std::vector<Motion> to_motions(const Doubles& rows) {
 
 inline constexpr std::uint8_t is_fixed = 1;
 inline constexpr std::uint8_t is_sensor = 2;
+inline constexpr std::uint8_t meets_itself = 4;
 
 /// Adds a body a row of `motions`, each with as many of the pieces of `script`; all, or none: then those that were
 /// added are removed again.
@@ -86,6 +87,7 @@ Ids add_rows(Held& self, const std::vector<PyShape>& shapes, const std::optional
       body.user_data = user_data.data()[i];
       body.fixed = (flags.data()[i] & is_fixed) != 0;
       body.sensor = (flags.data()[i] & is_sensor) != 0;
+      body.self_contacts = (flags.data()[i] & meets_itself) != 0;
       ids.push_back(world.add_body(body));
     }
   } catch (const std::exception& error) {

@@ -47,7 +47,8 @@ class Gatherer final : public EventSink {
 /// Events and counters of a run; files appear when it has ended, all or none.
 py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double rate, int kdop, bool pairs,
                     std::size_t threads, std::size_t domains, double shortest_flight, double orientation_error,
-                    bool gather, const std::string& csv, const std::string& replay, const std::string& title) {
+                    bool gather, bool profile, const std::string& csv, const std::string& replay,
+                    const std::string& title) {
   RunOptions options;
   options.broad_phase = broad_phase;
   options.rate = rate;
@@ -57,6 +58,7 @@ py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double r
   options.domains = domains;
   options.shortest_flight = shortest_flight;
   options.orientation_error = orientation_error;
+  options.profile = profile;
   options.steady_progress = broad_phase != "sap";  // whose frames would come more often
   Gatherer gatherer(gather);
   RunResult result;
@@ -81,7 +83,7 @@ py::tuple run_scene(const Scene& scene, const std::string& broad_phase, double r
     if (page) page->commit();
   }
   const auto rows = py::array_t<EventRow>(static_cast<py::ssize_t>(gatherer.rows.size()), gatherer.rows.data());
-  return py::make_tuple(rows, to_json(result, options, 0));
+  return py::make_tuple(rows, to_json(result, options, 0), seconds_by_work(result.profile));
 }
 
 std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const std::string& broad_phase,

@@ -27,7 +27,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains
                                    double start_time, double window, double rate, int kdop, bool report_pairs,
                                    bool report_pieces, std::size_t threads, std::uint32_t zeno_contacts,
                                    double zeno_interval, double shortest_flight, double orientation_error,
-                                   std::uint64_t most_edits) {
+                                   std::uint64_t most_edits, bool profile) {
   WorldOptions options;
   if (response == "none") {
     options.response = Response::none;
@@ -51,6 +51,7 @@ std::unique_ptr<PyWorld> new_world(int degree, bool turning, std::size_t domains
   options.shortest_flight = shortest_flight;
   options.orientation_error = orientation_error;
   options.most_edits = most_edits;
+  options.profile = profile;
   return hold_world({degree, turning, domains, record}, options, gather);
 }
 
@@ -227,9 +228,14 @@ void bind_world(py::module_& module) {
             py::arg("gather"), py::arg("record"), py::arg("response"), py::arg("broad_phase"), py::arg("walls"),
             py::arg("wall_restitution"), py::arg("start_time"), py::arg("window"), py::arg("rate"), py::arg("kdop"),
             py::arg("report_pairs"), py::arg("report_pieces"), py::arg("threads"), py::arg("zeno_contacts"),
-            py::arg("zeno_interval"), py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"));
+            py::arg("zeno_interval"), py::arg("shortest_flight"), py::arg("orientation_error"), py::arg("most_edits"),
+            py::arg("profile"));
   world.def("append", [](PyWorld& self, BodyId id, const Doubles& pieces) {
     self.to_change().append_motion(id, to_motions(pieces));
+  });
+  world.def("update_vertices", [](PyWorld& self, BodyId id, const std::vector<double>& times,
+                                  const std::vector<Eigen::Vector3d>& positions) {
+    self.to_change().update_vertices(id, to_keyframes(times, positions));
   });
   world.def("set_masses", [](PyWorld& self, const Ids& ids, const Doubles& masses) {
     self.to_change().set_masses(to_vector(ids), masses.data());
@@ -242,6 +248,13 @@ void bind_world(py::module_& module) {
   world.def("cancel_timer", [](PyWorld& self, TimerId timer) { return self.to_change().cancel_timer(timer); });
   world.def("next_time", [](PyWorld& self) { return self.to_change().next_time(); });
   world.def("shape", [](PyWorld& self, BodyId id) { return PyShape{self.world().shape(id)}; });
+  world.def("vertices", [](PyWorld& self, BodyId id) { return self.world().vertices(id); });
+  world.def("free_turning", [](PyWorld& self, BodyId id) {
+    const FreeTurning turning = self.world().free_turning(id);
+    const Eigen::Quaterniond& q = turning.orientation;
+    return py::make_tuple(Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()), turning.angular_velocity,
+                          turning.angular_momentum);
+  });
   world.def("mass", [](PyWorld& self, BodyId id) { return self.world().mass(id); });
   world.def("fixed", [](PyWorld& self, BodyId id) { return self.world().fixed(id); });
   world.def("attached_to", [](PyWorld& self, BodyId id) { return self.world().attached_to(id); });
@@ -255,6 +268,7 @@ void bind_world(py::module_& module) {
   world.def("user_data", [](PyWorld& self, BodyId id) { return self.world().user_data(id); });
   world.def("broad_phase", [](PyWorld& self) { return std::string(self.world().broad_phase()); });
   world.def("counters", &counters);
+  world.def("profile", [](PyWorld& self) { return seconds_by_work(self.world().profile()); });
   bind_queries(world);
 }
 

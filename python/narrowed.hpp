@@ -3,6 +3,7 @@
 
 #include "collision/body_description.hpp"
 #include "collision/body_motion.hpp"
+#include "collision/motion_range.hpp"
 #include "python/rows.hpp"
 
 #include <algorithm>
@@ -79,6 +80,7 @@ kds::collision::BasicBodyDescription<M> narrowed(const kds::collision::BasicBody
   own.group = body.group;
   own.attached_to = body.attached_to;
   own.sensor = body.sensor;
+  own.self_contacts = body.self_contacts;
   own.user_data = body.user_data;
   return own;
 }

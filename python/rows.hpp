@@ -3,6 +3,7 @@
 
 #include "certificates/point_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/profile.hpp"
 #include "collision/shapes/feature.hpp"
 #include "io/events.hpp"
 
@@ -13,6 +14,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
 
 namespace kds_python {
 
@@ -68,6 +72,18 @@ static_assert(sizeof(PeriodicRow) == 152);
 
 inline std::int64_t kind_of(const EventRow& row) { return row.kind; }
 inline std::int64_t kind_of(const PeriodicRow& row) { return row.event.kind; }
+
+/// CPU time in s, by name of the work (kds::collision::Work).
+inline std::map<std::string, double> seconds_by_work(const kds::collision::Profile& profile) {
+  using kds::collision::Work;
+  std::map<std::string, double> seconds;
+  for (const auto& [work, name] :
+       {std::pair(Work::update, "update"), std::pair(Work::sort, "sort"), std::pair(Work::prune, "prune"),
+        std::pair(Work::test, "test"), std::pair(Work::other, "other")}) {
+    seconds[name] = profile.seconds(work);
+  }
+  return seconds;
+}
 
 /// A body near a point or a shape.
 struct NearRow {

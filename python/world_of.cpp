@@ -2,6 +2,7 @@
 #include "collision/queries/casts.hpp"
 #include "collision/queries/future.hpp"
 #include "collision/queries/near_pairs.hpp"
+#include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
 #include "collision/world/checked_pieces.hpp"
 #include "io/scene_world.hpp"
@@ -70,6 +71,9 @@ class WorldOf final : public AnyWorld {
     for (const Motion& piece : pieces) own.push_back(narrowed<M>(piece, "motion[" + std::to_string(own.size()) + "]"));
     whole().append_motion(id, own);
   }
+  void update_vertices(BodyId id, std::vector<MeshKeyframe> keyframes) override {
+    whole().update_vertices(id, std::move(keyframes));
+  }
 
   void set_masses(const std::vector<BodyId>& ids, const double* masses) override {
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -128,6 +132,20 @@ class WorldOf final : public AnyWorld {
   Motion motion_now(BodyId id) const override { return now_of(whole().motion(id), id); }
   Motion free_motion_now(BodyId id) const override { return now_of(whole().free_motion(id), id); }
   Shape shape(BodyId id) const override { return whole().shape(id).shape; }
+  std::vector<Eigen::Vector3d> vertices(BodyId id) const override {
+    const Shape shape = whole().shape(id).shape;
+    if (!bends(shape)) {
+      throw std::invalid_argument("vertices: body " + std::to_string(id) + " is no mesh that bends");
+    }
+    const MeshScript& script = *std::get<BendingMesh>(shape).script;
+    std::vector<Eigen::Vector3d> positions(script.vertices());
+    for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = script.position(i, now());
+    return positions;
+  }
+  FreeTurning free_turning(BodyId id) const override {
+    if constexpr (turns<M>) return whole().free_turning(id);
+    if constexpr (!turns<M>) throw std::invalid_argument("free_turning: in this world bodies do not turn");
+  }
   double mass(BodyId id) const override { return whole().mass(id); }
   bool fixed(BodyId id) const override { return whole().fixed(id); }
   bool sensor(BodyId id) const override { return whole().sensor(id); }
@@ -152,6 +170,7 @@ class WorldOf final : public AnyWorld {
     if constexpr (!divided) return world_.counters();
   }
   std::string_view broad_phase() const override { return world_.broad_phase(); }
+  Profile profile() const override { return whole().work_profile(); }
   void audit() const override { whole().audit(); }
   kds::Snapshot save() override { return kds::save(world_); }
   void restore(const kds::Snapshot& snapshot) override {

@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/compound_contact.hpp"
 
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/part_pairs.hpp"

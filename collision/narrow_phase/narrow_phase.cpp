@@ -1,5 +1,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/bending_contact.hpp"

@@ -1,6 +1,7 @@
 // What callers do with a periodic world, and how contacts are answered.
 #include "collision/periodic/periodic_world.hpp"
 
+#include "collision/motion_range.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/shape.hpp"
@@ -75,7 +76,13 @@ bool PeriodicWorld<Degree>::contains(BodyId id) const {
 template <int Degree>
 const typename PeriodicWorld<Degree>::Real& PeriodicWorld<Degree>::real(BodyId id) const {
   if (!contains(id)) [[unlikely]] {
-    throw std::out_of_range("PeriodicWorld: there is no body " + std::to_string(id));
+    const BodySlot slot = body_slot(id);
+    // A place all of whose ids have been given and removed has the generation 0 again, and no body.
+    const bool removed = slot < reals_.size() && (body_generation(id) < reals_[slot].generation ||
+                                                  (reals_[slot].generation == 0 && !reals_[slot].alive));
+    throw std::out_of_range("PeriodicWorld: there is no body " + std::to_string(id) + " (generation " +
+                            std::to_string(body_generation(id)) + " of slot " + std::to_string(slot) + "): it " +
+                            (removed ? "was removed" : "has never been there"));
   }
   return reals_[body_slot(id)];
 }

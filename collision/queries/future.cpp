@@ -3,6 +3,7 @@
 #include "collision/body_description.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/broad_phase/swept_box.hpp"
+#include "collision/motion_range.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/queries/standing_body.hpp"
 #include "collision/vectors.hpp"
@@ -147,7 +148,8 @@ std::optional<Hit> next_contact_of(const BasicWorld<Motion>& world, BodyId body,
   require_span("next_contact_of", world, until);
   if (!detail::entered(world, body)) return std::nullopt;
   const PlacedShape shape = world.shape(body);
-  return first_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
+  const Motion motion = world.motion(body);
+  return first_met(world, MovingShape<Motion>{shape, motion}, until, mode,
                    [&](BodyId id) { return id != body && detail::accepts(filter, id); });
 }
 
@@ -157,7 +159,8 @@ std::vector<Hit> next_contacts_of(const BasicWorld<Motion>& world, BodyId body, 
   require_span("next_contacts_of", world, until);
   if (!detail::entered(world, body)) return {};
   const PlacedShape shape = world.shape(body);
-  return all_met(world, MovingShape<Motion>{shape, world.motion(body)}, until, mode,
+  const Motion motion = world.motion(body);
+  return all_met(world, MovingShape<Motion>{shape, motion}, until, mode,
                  [&](BodyId id) { return id != body && detail::accepts(filter, id); });
 }
 

@@ -15,7 +15,8 @@ struct Hit {
   Contact contact;
 };
 
-/// Whether a query is to look at a body. Empty: at all.
+/// Whether a query is to look at a body. Empty: at all. It may ask the world, but must not change it: a body that it
+/// removes may be looked at after that, which throws std::out_of_range.
 using BodyFilter = std::function<bool(BodyId)>;
 
 namespace detail {

@@ -30,13 +30,6 @@ struct RotationState {
   }
 };
 
-/// What a world tells of a body that turns freely.
-struct FreeTurning {
-  Eigen::Quaterniond orientation;    ///< of the body, of length 1 but for roundings
-  Eigen::Vector3d angular_velocity;  ///< rad/s, here and below in the axes of the world
-  Eigen::Vector3d angular_momentum;  ///< about the centre of mass; mass * length^2 / s
-};
-
 /// In the axes of the world, rad/s. It is made with the same rounded inverse moments as inverse_inertia(): if it were
 /// not, each impulse would be wrong in the same sense, and the energy of a gas would drift.
 Eigen::Vector3d angular_velocity(const PrincipalInertia& inertia, const RotationState& state);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/mesh_keyframe.hpp"
 #include "collision/shapes/surface_tree.hpp"
 
 #include <Eigen/Core>
@@ -19,11 +20,7 @@ namespace kds::collision {
 /// the body.
 class MeshScript {
  public:
-  /// Where the vertices are at a time, in the order of the mesh.
-  struct Keyframe {
-    double time;  ///< s
-    std::vector<Eigen::Vector3d> positions;
-  };
+  using Keyframe = MeshKeyframe;
 
   /// What scripts that continue each other share: the triangles, and a tree made from where the vertices once were.
   struct Form {

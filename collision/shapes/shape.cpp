@@ -11,6 +11,8 @@
 #include "collision/shapes/sphere.hpp"
 #include "collision/vectors.hpp"
 
+#include <Eigen/LU>
+
 #include <cmath>
 #include <stdexcept>
 #include <string>

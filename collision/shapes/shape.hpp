@@ -1,8 +1,9 @@
 // Shapes of bodies, and what the rest of the module needs to know of any shape.
 #pragma once
 
+#include "collision/quaternion.hpp"
+
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include <array>
 #include <memory>

@@ -1,4 +1,5 @@
 // How fast bodies bounce off meshes that bend.
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/motions.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/vectors.hpp"

@@ -1,5 +1,6 @@
 #include "collision/world/bodies.hpp"
 
+#include "certificates/turning/rotation.hpp"
 #include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 

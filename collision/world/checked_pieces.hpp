@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_description.hpp"
 #include "collision/body_motion.hpp"
+#include "collision/motion_range.hpp"
 #include "collision/response/rotation_piece.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/vectors.hpp"

@@ -1,4 +1,5 @@
 // How bodies are added to the world and removed.
+#include "collision/free_turning.hpp"
 #include "collision/in_parts.hpp"
 #include "collision/motions.hpp"
 #include "collision/profile.hpp"
@@ -113,6 +114,7 @@ void Engine<Motion>::reserve(std::size_t bodies) {
   if (bodies <= reserved_) return;
   reserved_ = static_cast<BodySlot>(bodies);
   broad_phase_->reserve(reserved_);
+  pairs_.reserve(reserved_);
 }
 
 /// A sensor with the motion of its owner.

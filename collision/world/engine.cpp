@@ -291,6 +291,7 @@ double Engine<Motion>::next_time() {
 /// makes no difference whether callers look for it before they change something.
 template <class Motion>
 bool Engine<Motion>::process() {
+  require_idle("World::process");
   const double t = next_time();
   if (t == never) return false;
   const bool happened = step(t);

@@ -1,4 +1,5 @@
 // How the motions of bodies are changed.
+#include "collision/motion_range.hpp"
 #include "collision/motions.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/mesh_script.hpp"

@@ -2,6 +2,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/balls_together.hpp"
 #include "certificates/conjunction.hpp"
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/broad_phase/box_overlap.hpp"
 #include "collision/in_parts.hpp"
 #include "collision/motions.hpp"
@@ -270,12 +271,16 @@ void Pairs<Motion>::test(Slot slot) {
   remember(slot, found);
 }
 
+/// So many results of tests are made room for at a time: 0.1 ms.
+constexpr std::size_t written_at_once = 2048;
+
 /// Keeps what a test has found of a contact to come, so that it need not be found again when the contact is due.
 template <class Motion>
 void Pairs<Motion>::remember(Slot slot, const FoundTouch& found) {
   if (slot >= found_.size()) {
     if (found.time == never) return;
-    found_.resize(pairs_.capacity());
+    found_.reserve(pairs_.capacity());  // so that it grows without a copy, and is written to a little at a time
+    found_.resize(std::min(pairs_.capacity(), std::max<std::size_t>(slot + 1, found_.size() + written_at_once)));
   }
   found_[slot] = found;
 }

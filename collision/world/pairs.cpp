@@ -26,12 +26,23 @@ Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volume
 /// Reserves room for these pairs and some more, if they are the first.
 template <class Motion>
 void Pairs<Motion>::pairs_to_come(std::size_t pairs) {
-  if (!pairs_.empty()) return;
-  const std::size_t room = pairs + pairs / 4;
-  pairs_.reserve(room);
-  dirty_.reserve(room);
-  make_room(contacts_, room);
-  links_.reserve(2 * first_pairs * pairs);
+  if (pairs_.empty()) make_room_for(pairs + pairs / 4);
+}
+
+template <class Motion>
+void Pairs<Motion>::reserve(std::size_t bodies) {
+  of_.reserve(bodies);
+  make_room_for(bodies + bodies / 4);
+}
+
+template <class Motion>
+void Pairs<Motion>::make_room_for(std::size_t pairs) {
+  if (pairs <= pairs_.capacity()) return;
+  const std::size_t more = pairs - pairs_.size();
+  pairs_.reserve(pairs);
+  dirty_.reserve(pairs);
+  make_room(contacts_, pairs);
+  links_.reserve(2 * first_pairs * more);
 }
 
 /// Pairs with an unbounded body are listed by Unbounded, not by the broad phase.

@@ -92,6 +92,9 @@ class Pairs final : public PairListener {
   /// Whether the broad phase reports exactly the boxes that overlap. To be set before the first pair.
   void expect_exact(bool exact) { follows_boxes_ = options_.report_pairs && !exact, exact_ = exact; }
 
+  /// Makes room for the pairs of so many bodies in all, somewhat more than one a body, at once.
+  void reserve(std::size_t bodies);
+
   // Reports of the broad phase. It runs ahead to t, and the clock with it.
   void pairs_to_come(std::size_t pairs) override;
   bool filters() const override { return bodies_.filters(); }
@@ -234,6 +237,7 @@ class Pairs final : public PairListener {
     return id < of_.size() ? links_.items(of_[id]) : std::span<const Link>();
   }
   bool unbounded(const Pair& pair) const { return bodies_.unbounded(pair.a) || bodies_.unbounded(pair.b); }
+  void make_room_for(std::size_t pairs);
   Slot find(BodySlot a, BodySlot b) const;
   Slot add(BodySlot a, BodySlot b);
   void link(Slot slot, std::uint32_t first_room = first_pairs);

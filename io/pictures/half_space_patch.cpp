@@ -1,5 +1,7 @@
 #include "io/pictures/half_space_patch.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>

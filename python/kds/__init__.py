@@ -12,13 +12,14 @@ orientations unit quaternions w, x, y, z. What is wrong with an argument is said
 a call is not possible now. The guide is docs/python.md.
 """
 
+from kds._bodies import FreeTurning
 from kds._events import EventKind, event_dtype, feature_name, periodic_event_dtype
 from kds._kds import Shape, version as __version__
 from kds._motion import Motion
 from kds._periodic import PeriodicWorld
-from kds._queries import Approach, Distance
+from kds._queries import Approach, Distance, shape_distance
 from kds._scene import Run, Scene, generate_scene
-from kds._shapes import box, capsule, compound, half_space, heightfield, hull, mesh, read_mesh, sphere
+from kds._shapes import bending_mesh, box, capsule, compound, half_space, heightfield, hull, mesh, read_mesh, sphere
 from kds._structures import ConvexHull, Delaunay, SortedList
 from kds._world import World
 
@@ -28,6 +29,7 @@ __all__ = [
     "Delaunay",
     "Distance",
     "EventKind",
+    "FreeTurning",
     "Motion",
     "PeriodicWorld",
     "Run",
@@ -35,6 +37,7 @@ __all__ = [
     "Shape",
     "SortedList",
     "World",
+    "bending_mesh",
     "box",
     "capsule",
     "compound",
@@ -47,5 +50,6 @@ __all__ = [
     "mesh",
     "periodic_event_dtype",
     "read_mesh",
+    "shape_distance",
     "sphere",
 ]

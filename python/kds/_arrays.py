@@ -39,6 +39,37 @@ def doubles(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> Doubl
     return np.ascontiguousarray(array, dtype=np.float64)
 
 
+def triangles_of(value: ArrayLike, vertices: int) -> NDArray[np.uint32]:
+    """(m, 3) numbers of vertices."""
+    corners = array_of("triangles", value)
+    if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
+        raise ValueError(
+            f"triangles: must be whole numbers of shape (m, 3), and is {corners.dtype} of shape {corners.shape}"
+        )
+    if corners.size and not 0 <= corners.min() <= corners.max() < vertices:
+        found = f"from {corners.min()} to {corners.max()}"
+        raise ValueError(f"triangles: must be from 0 to {vertices - 1}, and go {found}")
+    return corners.astype(np.uint32)
+
+
+def keyframes(times: ArrayLike, positions: ArrayLike) -> tuple[Doubles, Doubles]:
+    """Times (k,), and positions (k, n, 3) as (k * n, 3): or one of each."""
+    if array_of("times", times).ndim == 0:
+        when = np.array([number("times", times)])
+        where = doubles("positions", positions, (None, 3))[None]
+    else:
+        when = doubles("times", times, (None,))
+        if len(when) == 0:
+            where = array_of("positions", positions)
+            if where.size:
+                raise ValueError(f"positions: must be none, as there are no times, and has the shape {where.shape}")
+            return when, np.empty((0, 3))
+        where = doubles("positions", positions, (None, None, 3))
+        if len(where) != len(when):
+            raise ValueError(f"positions: must be of {len(when)} times, and has the shape {where.shape}")
+    return when, where.reshape(-1, 3)
+
+
 def vector(name: str, value: ArrayLike) -> Doubles:
     return doubles(name, value, (3,))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Iterable, Sequence
+from typing import Any, Iterable, NamedTuple, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -44,6 +44,14 @@ from kds._motion import (
 )
 
 
+class FreeTurning(NamedTuple):
+    """How a body turns at a time: (4,), of length 1 but for roundings, and (3,), in the axes of the world."""
+
+    orientation: np.ndarray  #: w, x, y, z
+    angular_velocity: np.ndarray  #: rad/s
+    angular_momentum: np.ndarray  #: about the centre of mass; mass * length^2 / s
+
+
 class MovingBodies:
     """How bodies come into a world of any kind, and how they move there."""
 
@@ -72,6 +80,7 @@ class MovingBodies:
         collides_with: int = 0xFFFFFFFF,
         group: int = 0,
         sensor: bool = False,
+        self_contacts: bool = False,
         user_data: int = 0,
     ) -> int:
         """Adds a body; returns its id.
@@ -83,7 +92,8 @@ class MovingBodies:
         all of these. `inertia` (worlds that turn): a moment or a tensor (3,
         3), else that of a solid of the shape. Of two bodies the lower restitution and friction count. Two bodies may
         meet if the category of each shares a bit with collides_with of the other, and their group is not the same, or
-        0. A sensor reports, and passes through all. user_data: a number of 64 bits of your own, which events carry.
+        0. A sensor reports, and passes through all. self_contacts: of a mesh that bends, whether its contacts with itself
+        are events, too, of the body with itself; in every mode it goes on through itself. user_data: a number of 64 bits of your own, which events carry.
 
         ValueError names what is wrong; then nothing is added. See collision/body_description.hpp.
         """
@@ -123,6 +133,7 @@ class MovingBodies:
             collides_with=unsigned("collides_with", collides_with, 1, 32),
             group=unsigned("group", group, 1, 32),
             sensor=flags("sensor", sensor, 1),
+            self_contacts=flags("self_contacts", self_contacts, 1),
             user_data=unsigned("user_data", user_data, 1, 64),
         )
         return int(added[0])
@@ -151,6 +162,7 @@ class MovingBodies:
         collide_with: ArrayLike = 0xFFFFFFFF,
         groups: ArrayLike = 0,
         sensors: ArrayLike = False,
+        self_contacts: ArrayLike = False,
         user_data: ArrayLike = 0,
     ) -> Ids:
         """Adds n bodies; returns their ids (n,), of uint64.
@@ -198,6 +210,7 @@ class MovingBodies:
             collides_with=unsigned("collide_with", collide_with, n, 32),
             group=unsigned("groups", groups, n, 32),
             sensor=flags("sensors", sensors, n),
+            self_contacts=flags("self_contacts", self_contacts, n),
             user_data=unsigned("user_data", user_data, n, 64),
         )
 
@@ -220,6 +233,7 @@ class MovingBodies:
         collides_with: Any,
         group: Any,
         sensor: Any,
+        self_contacts: Any,
         user_data: Any,
     ) -> Ids:
         n = len(motions)
@@ -228,7 +242,7 @@ class MovingBodies:
         for place, value in enumerate((mass, inertia, *surfaces)):
             numbers[:, place] = value
         both = np.stack([category, collides_with, group], axis=1)
-        bits = fixed + np.uint8(2) * sensor
+        bits = fixed + np.uint8(2) * sensor + np.uint8(4) * self_contacts
         if n == 0:
             return np.empty(0, np.uint64)
         return self._core.add(shapes, radii, motions, numbers, both, bits, user_data, tensor, later)
@@ -317,6 +331,17 @@ class Bodies(MovingBodies):
     def shape(self, body: int) -> Shape:
         """The shape that it was added with."""
         return self._core.shape(identity("body", body))
+
+    def vertices(self, body: int) -> Doubles:
+        """Where the vertices of a mesh that bends are now (n, 3), seen from the body's centre and before it is turned
+        into its orientation. ValueError for other bodies."""
+        return np.array(self._core.vertices(identity("body", body)), np.float64).reshape(-1, 3)
+
+    def free_turning(self, body: int) -> FreeTurning:
+        """How a body is turned now, and turns, in a world that turns; of one that precesses exact up to roundings, where
+        angular_velocities() has that of its present piece. ValueError for a body whose turning no contact changes (one
+        that is fixed, or a sensor), and in other worlds."""
+        return FreeTurning(*self._core.free_turning(identity("body", body)))
 
     def mass(self, body: int) -> float:
         """Its mass; of a fixed body too, which no contact moves."""

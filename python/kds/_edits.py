@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import Doubles, Ids, column, doubles, identity, ids, one_or_more, rows, unsigned, vector
+from kds._arrays import Doubles, Ids, column, doubles, identity, ids, keyframes, one_or_more, rows, unsigned, vector
 from kds._motion import (
     ACCELERATION,
     ANGULAR_VELOCITY,
@@ -134,6 +134,18 @@ class Edits(MotionEdits):
         """Adds pieces of motion after those that are still to come, each later than the one before: so a stream of
         pieces needs no more than the next ones. All are added, or none."""
         self._core.append(identity("body", body), pieces("motion", motion, self._core.now()))
+
+    def update_vertices(self, body: int, times: ArrayLike = (), positions: ArrayLike = ()) -> None:
+        """Replaces what is still to come of the vertices of a mesh that bends: from where they are now they move on
+        straight lines to the positions (k, n, 3) at the times (k,), each later than now (s) and than the one before,
+        and stand still after the last; with none, from now on. One time may be a number, its positions (n, 3).
+
+        So a simulator of cloth gives the end of each of its steps. Nothing jumps; the motion of the body goes on.
+        Pictures of a world that records show the vertices that a body is first seen with.
+        """
+        which = identity("body", body)
+        when, where = keyframes(times, positions)
+        self._core.update_vertices(which, when, where)
 
     def set_mass(self, bodies: ArrayLike, mass: ArrayLike) -> None:
         """Gives bodies other masses: an id, or ids (n,), and a number for all or (n,); inertias change by the same

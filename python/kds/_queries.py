@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import Doubles, Ids, doubles, identity, number, shape_of, vector, whole, word
+from kds._arrays import Doubles, Ids, doubles, finite, identity, number, shape_of, vector, whole, word
 from kds._events import as_events
 from kds._kds import Shape
 from kds._motion import (
@@ -37,11 +37,35 @@ class Approach(NamedTuple):
 
 
 class Distance(NamedTuple):
-    """How far apart two bodies are, 0 where they have a point in common, and the nearest point (3,) of each."""
+    """How far apart two bodies or shapes are, 0 where they have a point in common, and the nearest point (3,) of each."""
 
     distance: float
     of_a: np.ndarray
     of_b: np.ndarray
+
+
+def shape_distance(
+    a: Shape,
+    b: Shape,
+    position: ArrayLike,
+    *,
+    orientation_a: ArrayLike = UPRIGHT,
+    orientation_b: ArrayLike = UPRIGHT,
+    time: float = 0.0,
+) -> Distance:
+    """How far apart two shapes are that are in no world: a with its centre in the origin, b with its centre at
+    `position` (3,), each in its orientation (4,), and the nearest point (3,) of each. Meshes are surfaces, all others
+    solid; meshes that bend are as they are at `time` (s)."""
+    return Distance(
+        *_kds.shape_distance(
+            shape_of("a", a),
+            doubles("orientation_a", orientation_a, (4,)),
+            shape_of("b", b),
+            doubles("orientation_b", orientation_b, (4,)),
+            vector("position", position),
+            finite("time", time),
+        )
+    )
 
 
 def _checked(filter: Filter | None) -> Filter | None:

@@ -92,21 +92,23 @@ class Scene:
         shortest_flight: float = 1e-3,
         orientation_error: float = 1e-3,
         gather: bool = True,
+        profile: bool = False,
         csv: str | os.PathLike[str] | None = None,
         replay: str | os.PathLike[str] | None = None,
     ) -> Run:
         """Runs the scene from its beginning to its end; it may be run any number of times.
 
         `csv`, `replay`: files to write, which are those of the tool's --events and --view to the byte; they appear when
-        the run has ended. gather=False: no array of events. The other arguments are the tool's; with more `domains` than
+        the run has ended. gather=False: no array of events. profile=True: stats["profile"] has the CPU time of each kind
+        of work, as World.profile. The other arguments are the tool's; with more `domains` than
         1, or 0 for as many as are best, the threads run parts of the scene (docs/parallel.md), the events are the same,
         and there are no pairs and no replay. Other threads go on meanwhile. OSError for files that cannot be written;
         RuntimeError where a replay wants three.js, which is not there.
         """
-        if domains != 1 and (pairs or replay is not None):
-            what = "pairs are told of" if pairs else "there is a replay"
+        if domains != 1 and (pairs or profile or replay is not None):
+            what = "pairs are told of" if pairs else "work is profiled" if profile else "there is a replay"
             raise ValueError(f"domains: must be 1 where {what}")
-        rows, stats = self._core.run(
+        rows, stats, work = self._core.run(
             word("broad_phase", broad_phase),
             number("rate", rate),
             whole("kdop", kdop, 2**31 - 1),
@@ -116,11 +118,15 @@ class Scene:
             number("shortest_flight", shortest_flight),
             number("orientation_error", orientation_error),
             flag("gather", gather),
+            flag("profile", profile),
             "" if csv is None else path("csv", csv),
             "" if replay is None else path("replay", replay),
             self._title,
         )
-        return Run(as_events(rows), json.loads(stats))
+        counted = json.loads(stats)
+        if profile:
+            counted["profile"] = work
+        return Run(as_events(rows), counted)
 
     def world(self, *, gather: bool = True, broad_phase: str = "auto", record: bool = False) -> World:
         """A world with the bodies of the scene, at its begin_time: to be run step by step, asked and changed. `record`:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kds import _kds
-from kds._arrays import array_of, doubles, flag, number, path, rows, shape_of, vector
+from kds._arrays import doubles, flag, keyframes, number, path, rows, shape_of, triangles_of, vector
 from kds._kds import Shape
 from kds._motion import UPRIGHT
 
@@ -48,16 +48,22 @@ def mesh(vertices: ArrayLike, triangles: ArrayLike, scale: float = 1.0) -> Shape
 
     vertices (n, 3); triangles (m, 3), whole numbers from 0 to n - 1; each vertex is multiplied by `scale`.
     """
-    corners = array_of("triangles", triangles)
-    if corners.dtype.kind not in "iu" or corners.ndim != 2 or corners.shape[1] != 3:
-        raise ValueError(
-            f"triangles: must be whole numbers of shape (m, 3), and is {corners.dtype} of shape {corners.shape}"
-        )
     points = doubles("vertices", vertices, (None, 3))
-    if corners.size and not 0 <= corners.min() <= corners.max() < len(points):
-        found = f"from {corners.min()} to {corners.max()}"
-        raise ValueError(f"triangles: must be from 0 to {len(points) - 1}, and go {found}")
-    return _kds.mesh(points, corners.astype(np.uint32), number("scale", scale))
+    return _kds.mesh(points, triangles_of(triangles, len(points)), number("scale", scale))
+
+
+def bending_mesh(times: ArrayLike, positions: ArrayLike, triangles: ArrayLike) -> Shape:
+    """A surface of triangles whose vertices move on their own: a sheet of cloth, a skin (docs/deforming.md).
+
+    times (k,), s, which ascend; positions (k, n, 3) of the vertices at these times, about the origin as the body's
+    centre: between two times they move on straight lines, before the first and after the last they stand still. One
+    time may be a number, its positions (n, 3). triangles (m, 3), whole numbers from 0 to n - 1; they may have no area.
+    World.update_vertices() goes on from there.
+    """
+    when, where = keyframes(times, positions)
+    if len(when) == 0:
+        raise ValueError("times: must be at least one")
+    return _kds.bending_mesh(when, where, triangles_of(triangles, len(where) // len(when)))
 
 
 def heightfield(heights: ArrayLike, spacing: ArrayLike = (1, 1)) -> Shape:

@@ -35,6 +35,7 @@ class World(Running, Bodies, Edits, Queries):
     gather: whether events are kept for advance_to() and take_events(). record: whether what happens is recorded, from
         the first body on, for write_replay(), write_gltf() and write_vtk(); in some hundred bytes an event. Not with
         domains.
+    profile: whether the CPU time of each kind of work is measured, for `profile`. Not with domains.
     start_time: s. window: s; how far ahead events are predicted at a time. threads: 0 for as many as there are.
 
     Bodies are named by their ids, whole numbers: 0, 1, 2, ... as long as none has been removed, and none is given
@@ -68,6 +69,7 @@ class World(Running, Bodies, Edits, Queries):
         shortest_flight: float = 1e-3,
         orientation_error: float = 1e-3,
         most_edits: int = 1_000_000,
+        profile: bool = False,
     ) -> None:
         corners = None
         if walls is not None:
@@ -94,11 +96,14 @@ class World(Running, Bodies, Edits, Queries):
             shortest_flight=number("shortest_flight", shortest_flight),
             orientation_error=number("orientation_error", orientation_error),
             most_edits=whole("most_edits", most_edits),
+            profile=flag("profile", profile),
         )
         if self._options["domains"] != 1:
             for option in ("report_pairs", "report_pieces"):
                 if self._options[option]:
                     raise ValueError(f"{option}: must be False in a world in domains, whose events have none of these")
+            if self._options["profile"]:
+                raise ValueError("profile: must be False in a world in domains")
         self._core = _kds.World(**self._options)
         self._degree = self._options["degree"]
         self._turning = self._options["turning"]
@@ -140,6 +145,12 @@ class World(Running, Bodies, Edits, Queries):
     def broad_phase(self) -> str:
         """The one in use."""
         return self._core.broad_phase()
+
+    @property
+    def profile(self) -> dict[str, float]:
+        """CPU time so far, s, by kind of work: 'update' of bounding volumes and motions, 'sort', 'prune', 'test' of
+        pairs, 'other'. All 0 unless the world was made with profile=True."""
+        return self._core.profile()
 
     def __repr__(self) -> str:
         kind = "turning, " if self._turning else ""

@@ -13,6 +13,8 @@
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

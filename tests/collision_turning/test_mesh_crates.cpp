@@ -1,4 +1,5 @@
 // Crates that are meshes: on floors and on each other they do as boxes do.
+#include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 
 #include <catch2/catch.hpp>

@@ -1,4 +1,6 @@
 // Worlds of bodies that precess: that turn freely, and whose moments of inertia differ.
+#include "collision/response/free_rotation.hpp"
+#include "collision/response/principal_inertia.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
 

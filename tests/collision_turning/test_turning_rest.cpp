@@ -1,4 +1,5 @@
 // Bodies that turn come to rest, and wake.
+#include "collision/shapes/mesh.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"

@@ -7,6 +7,7 @@
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <Eigen/LU>
 #include <catch2/catch.hpp>
 
 #include <cmath>

@@ -209,6 +209,33 @@ class Queries(unittest.TestCase):
         self.assertEqual(found.distance, 1.5)
         self.assertEqual((found.of_a.tolist(), found.of_b.tolist()), ([1, 0, 0], [2.5, 0, 0]))
 
+    def test_how_far_apart_shapes_are_that_are_in_no_world(self):
+        random = np.random.default_rng(8)
+        for _ in range(50):
+            place, radii, q = random.normal(0, 3, 3), random.uniform(0.1, 1, 2), random.normal(0, 1, 4)
+            q /= np.linalg.norm(q)
+            found = kds.shape_distance(kds.sphere(radii[0]), kds.sphere(radii[1]), place, orientation_b=q)
+            self.assertAlmostEqual(found.distance, max(np.linalg.norm(place) - radii.sum(), 0), delta=ERROR)
+            # The nearest point of a box is the place, in the axes of the box, cut to its half extents.
+            w, x, y, z = q
+            axes = np.array([
+                [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            ])  # fmt: skip
+            half = random.uniform(0.1, 1, 3)
+            nearest = axes @ np.clip(axes.T @ place, -half, half)
+            apart = np.linalg.norm(place - nearest)
+            if apart < radii[0]:
+                continue
+            found = kds.shape_distance(kds.box(half), kds.sphere(radii[0]), place, orientation_a=q)
+            self.assertAlmostEqual(found.distance, apart - radii[0], delta=ERROR)
+            self.assertLess(np.abs(found.of_a - nearest).max(), ERROR)
+            self.assertAlmostEqual(np.linalg.norm(found.of_b - found.of_a), found.distance, delta=ERROR)
+        sheet = kds.bending_mesh([0, 2], [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 2], [1, 0, 2], [0, 1, 2]]], [[0, 1, 2]])
+        for time, distance in ((-1, 4.5), (0, 4.5), (1.5, 3), (9, 2.5)):
+            self.assertAlmostEqual(kds.shape_distance(sheet, kds.sphere(0.5), (0.2, 0.2, 5), time=time).distance, distance)
+
 
 if __name__ == "__main__":
     unittest.main()

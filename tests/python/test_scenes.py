@@ -75,6 +75,12 @@ class Scenes(unittest.TestCase):
             scene.run(domains=2, replay=self.path("replay.html"))
         with self.assertRaisesRegex(ValueError, "domains: must be 1 where pairs are told of"):
             scene.run(domains=2, pairs=True)
+        self.assertNotIn("profile", whole.stats)
+        profiled = scene.run(profile=True)
+        self.assertEqual(profiled.events.tobytes(), whole.events.tobytes())
+        self.assertGreater(profiled.stats["profile"]["test"], 0)
+        with self.assertRaisesRegex(ValueError, "domains: must be 1 where work is profiled"):
+            scene.run(domains=2, profile=True)
         with self.assertRaisesRegex(ValueError, "domains: must be a whole number"):
             scene.run(domains=-1)
 

@@ -170,6 +170,46 @@ class Bulk(unittest.TestCase):
         np.testing.assert_array_equal(world.angular_velocities([ball])[0], [0, 0, 2])
         np.testing.assert_array_equal(world.orientations([ball])[0], [half, half, 0, 0])
 
+    def test_what_is_kept_of_free_turning(self):
+        """A box with three different moments tumbles: its angular momentum stays."""
+        world = kds.World(turning=True, response="elastic")
+        half, spin, mass = np.array([0.3, 0.6, 1.1]), np.array([0.4, 2.0, 0.3]), 2.5
+        box = world.add_body(kds.box(half), (0, 0, 0), angular_velocity=spin, mass=mass)
+        moments = mass / 3 * (half @ half - half**2)
+        first = world.free_turning(box)
+        np.testing.assert_allclose(first.angular_momentum, moments * spin, rtol=1e-14)
+        np.testing.assert_allclose(first.angular_velocity, spin, rtol=1e-14)
+        farthest = 0.0
+        for t in np.linspace(0.25, 8, 32):
+            world.advance_to(t)
+            turning = world.free_turning(box)
+            np.testing.assert_allclose(turning.angular_momentum, first.angular_momentum, rtol=1e-12)
+            w, *v = turning.orientation
+            self.assertAlmostEqual(w * w + np.dot(v, v), 1, delta=1e-12)
+            # Rotated back into the axes of the box, the momentum is its moments times the angular velocity.
+            back = [x + 2 * (np.cross(v, np.cross(v, x)) - w * np.cross(v, x))
+                    for x in (turning.angular_momentum, turning.angular_velocity)]  # fmt: skip
+            np.testing.assert_allclose(back[0], moments * back[1], atol=1e-12)
+            self.assertAlmostEqual(turning.angular_momentum @ turning.angular_velocity, (moments * spin) @ spin, delta=1e-11)
+            farthest = max(farthest, np.abs(turning.angular_velocity - spin).max())
+        self.assertGreater(farthest, 0.5)  # so it did tumble
+        with self.assertRaisesRegex(ValueError, "free_turning"):
+            world.free_turning(world.add_body(kds.sphere(1), (9, 0, 0), fixed=True))
+        flat = kds.World()
+        with self.assertRaisesRegex(ValueError, "free_turning: in this world bodies do not turn"):
+            flat.free_turning(flat.add_body(kds.sphere(1), (0, 0, 0)))
+
+    def test_where_the_time_goes(self):
+        for profile in (False, True):
+            world, data = gas(300, 9, profile=profile)
+            world.add_bodies(None, **data)
+            events = world.advance_to(1)
+            self.assertGreater(len(events), 10)
+            self.assertEqual(set(world.profile), {"update", "sort", "prune", "test", "other"})
+            self.assertEqual(world.profile["test"] > 0, profile)
+        with self.assertRaisesRegex(ValueError, "profile: must be False in a world in domains"):
+            kds.World(domains=2, profile=True)
+
     def test_what_turns_meets_a_floor(self):
         world = kds.World(turning=True)
         floor = world.add_body(kds.half_space((0, 0, 1)), (0, 0, 0), fixed=True)

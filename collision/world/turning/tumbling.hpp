@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/body_motion.hpp"
+#include "collision/free_turning.hpp"
 #include "collision/response/free_rotation.hpp"
 #include "collision/response/rotation_piece.hpp"
 #include "collision/world/bodies.hpp"
@@ -13,7 +14,6 @@
 #include "kds/events/dary_queue.hpp"
 #include "kds/framework/snapshot.hpp"
 
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <memory>

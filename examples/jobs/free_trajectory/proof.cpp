@@ -1,6 +1,7 @@
 #include "examples/jobs/free_trajectory/proof.hpp"
 
 #include "collision/queries/nearest.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 
 #include <algorithm>

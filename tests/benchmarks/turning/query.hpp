@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>

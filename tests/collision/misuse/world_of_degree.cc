@@ -1,4 +1,5 @@
 // Worlds of some degrees, of which there are two, and with splines five; and of motions of which there are none.
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/world.hpp"
 
 /// All that a motion needs; but the library is not compiled for it.

@@ -1,3 +1,4 @@
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/parallel/division.hpp"
 
 #include "collision/parallel/domain.hpp"

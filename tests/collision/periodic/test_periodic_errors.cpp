@@ -104,11 +104,11 @@ TEST_CASE("periodic world: ids of images and of bodies that were removed") {
   CHECK(image != world.in_world(body));
   CHECK((world.owner(image).body == body && world.owner(image).offset == Offset{1, 0, 0}));
   CHECK_FALSE(world.contains(1));
-  CHECK_THROWS_WITH(world.motion(1), Contains("there is no body 1"));
+  CHECK_THROWS_WITH(world.motion(1), Contains("no body 1 (generation 0 of slot 1): it has never been there"));
   CHECK_THROWS_AS(world.remove_body(1), std::out_of_range);
   world.remove_body(body);
   CHECK(world.world().size() == 0);
-  CHECK_THROWS_WITH(world.motion(body), Contains("there is no body 0"));
+  CHECK_THROWS_WITH(world.motion(body), Contains("no body 0 (generation 0 of slot 0): it was removed"));
   CHECK_THROWS_AS(world.owner(image), std::out_of_range);
   const BodyId next = world.add_body({.shape = Sphere{0.5}, .motion = {{{{2, 2, 2}}, 0}}});
   CHECK(next == body_id(1, 0));

@@ -7,6 +7,7 @@
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <Eigen/LU>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <catch2/catch.hpp>
 

@@ -1,4 +1,6 @@
 // Ids of bodies that were removed: stale for good, whatever comes into their slot, and whatever is loaded.
+#include "collision/queries/future.hpp"
+#include "collision/queries/nearest.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/history.hpp"
 #include "kds/framework/snapshot.hpp"
@@ -14,6 +16,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -56,7 +59,41 @@ void require_stale(World<Degree>& world, BodyId gone, BodyId there) {
   throws([&] { world.resting(gone, there); });
   throws([&] { world.resting(there, gone); });
   throws([&] { world.resting_at_wall(gone, 0); });
-  throws([&] { world.update_motion(gone, motion<Degree>({7, 7, 7}, zero, zero, world.now())); });
+  throws([&] { world.restitution(gone); });
+  throws([&] { world.category(gone); });
+  throws([&] { world.collides_with(gone); });
+  throws([&] { world.group(gone); });
+  throws([&] { world.user_data(gone); });
+  throws([&] { world.attached_to(gone); });
+  throws([&] { world.ignores_pair(there, gone); });
+  throws([&] { world.visit_partners(gone, [](BodyId) {}); });
+  const double until = world.now() + 1;
+  throws([&] { next_contact_of(world, gone, until); });
+  throws([&] { next_contacts_of(world, gone, until); });
+  throws([&] { next_contact_between(world, gone, there, until); });
+  throws([&] { next_contact_between(world, there, gone, until); });
+  throws([&] { closest_approach(world, there, gone, until); });
+  throws([&] { distance_between(world, gone, there); });
+  const auto still = motion<Degree>({7, 7, 7}, zero, zero, world.now());
+  const auto later = motion<Degree>({7, 7, 7}, zero, zero, until);
+  throws([&] { world.update_motion(gone, still); });
+  throws([&] { world.update_motion(gone, std::span(&still, 1)); });
+  throws([&] { world.append_motion(gone, std::span(&later, 1)); });
+  throws([&] { world.update_vertices(gone, {}); });
+  throws([&] { world.set_mass(gone, 2); });
+  throws([&] { world.set_restitution(gone, 0.5); });
+  throws([&] { world.set_filter(gone, 2, 2); });
+  throws([&] { world.set_group(gone, 2); });
+  throws([&] { world.ignore_pair(gone, there); });
+  throws([&] { world.ignore_pair(there, gone); });
+  throws([&] { world.set_user_data(gone, 2); });
+  throws([&] {
+    auto attached = body<Degree>(Sphere{1}, still);
+    attached.motion.clear();
+    attached.sensor = true;
+    attached.attached_to = gone;
+    world.add_body(attached);
+  });
   throws([&] { world.remove_body(gone); });
   CHECK(world.contains(there));
 }
