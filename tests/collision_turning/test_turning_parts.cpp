@@ -312,9 +312,9 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves otherw
   CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
                     Contains("rests on nothing"));
   image = part.rest.image();
-  image.carried_at[ball][0] = std::numeric_limits<double>::infinity();
+  image.carriers[ball].velocity[0] = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
-                    Contains("the velocity of what carries it is not finite"));
+                    Contains("the motion of what carries it is not finite"));
 }
 
 }  // namespace kds::collision::test_turning_parts

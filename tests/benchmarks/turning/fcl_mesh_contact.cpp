@@ -1,5 +1,6 @@
 // FCL's conservative advancement of meshes, in calls of up to 3 rad as of boxes.
 #include "tests/benchmarks/turning/fcl_mesh.hpp"
+#include "tests/benchmarks/turning/fcl_motion.hpp"
 #include "tests/benchmarks/turning/query.hpp"
 
 #include <fcl/geometry/bvh/BVH_model.h>
@@ -28,9 +29,9 @@ double FclMesh::contact(const Motion& a, const Motion& b, double tolerance) cons
   const int parts = std::max(1, static_cast<int>(std::ceil(turn / 3)));
   for (int part = 0; part < parts; ++part) {
     const double from = static_cast<double>(part) / parts, to = (part + 1.0) / parts;
+    const fcl::InterpMotion<double> of_a = fcl_motion(a, from, to), of_b = fcl_motion(b, from, to);
     fcl::ContinuousCollisionResultd result;
-    fcl::continuousCollide<double>(model_.get(), pose(a, from), pose(a, to), model_.get(), pose(b, from), pose(b, to),
-                                   request, result);
+    fcl::continuousCollide<double>(model_.get(), &of_a, model_.get(), &of_b, request, result);
     if (result.is_collide) return from + result.time_of_contact * (to - from);
   }
   return 2;
