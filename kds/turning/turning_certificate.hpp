@@ -148,6 +148,16 @@ Ball<double> turning_value_in_doubles(const C& certificate, double t) {
   }
 }
 
+/// What is referred to tells.
+template <int Degree, int Harmonics>
+bool plainly_vanishes(const TurningReference<Degree, Harmonics>& certificate) {
+  return certificate.plainly_vanishes();
+}
+template <int Degree, int Harmonics>
+Ball<DoubleDouble> extended_turning_value(const TurningReference<Degree, Harmonics>& certificate, double t) {
+  return certificate.extended_value(t);
+}
+
 /// Whether all coefficients of f are zero and doubles tell so: then it is zero at all times. That is most of what is.
 template <class C>
 bool plainly_vanishes(const C& certificate) {
@@ -157,8 +167,6 @@ bool plainly_vanishes(const C& certificate) {
       if (!is_known_zero(polynomial.c)) return false;
     }
   }
-  ++turning_sign_counters.exact;
-  ++turning_sign_counters.zeros;
   return true;
 }
 
@@ -176,7 +184,11 @@ Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
     }
     if (certain_sign(value) != 0) return value;
   }
-  if (plainly_vanishes(certificate)) return {};
+  if (plainly_vanishes(certificate)) {
+    ++turning_sign_counters.exact;
+    ++turning_sign_counters.zeros;
+    return {};
+  }
   return turning_value<Ball<DoubleDouble>>(certificate, t);
 }
 
@@ -222,7 +234,7 @@ int general_turning_sign(const TurningReference<Degree, Harmonics>& certificate,
 
 template <int Degree, int Harmonics>
 bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int derivative) {
-  if (derivative == 0 && certificate.plainly_vanishes()) return true;
+  if (derivative == 0 && plainly_vanishes(certificate)) return true;
   const std::array<Spin, 2> spins = certificate.spins();
   return vanishes_throughout(derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
 }
