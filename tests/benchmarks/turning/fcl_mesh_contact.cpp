@@ -22,8 +22,8 @@ FclMesh::FclMesh(const kds::collision::Mesh& mesh) : model_(std::make_shared<Mod
   model_->endModel();
 }
 
-double FclMesh::contact(const Motion& a, const Motion& b, double tolerance) const {
-  const fcl::ContinuousCollisionRequestd request(1000, tolerance, fcl::CCDM_LINEAR, fcl::GST_LIBCCD,
+double FclMesh::contact(const Motion& a, const Motion& b) const {
+  const fcl::ContinuousCollisionRequestd request(1000, 1e-4, fcl::CCDM_LINEAR, fcl::GST_LIBCCD,
                                                  fcl::CCDC_CONSERVATIVE_ADVANCEMENT);
   const double turn = std::max(a.angular_velocity.norm(), b.angular_velocity.norm());
   const int parts = std::max(1, static_cast<int>(std::ceil(turn / 3)));
