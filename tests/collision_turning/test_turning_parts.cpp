@@ -300,7 +300,8 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves otherw
   auto moves = still;
   moves.path.coefficients[1] = Vector3d(0, 1, 0);
   part.bodies.move(ball, moves);
-  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests, and does not move with what it rests on"));
+  CHECK_THROWS_WITH(part.rest.audit(part.clock.now),
+                    Contains("body 1: it rests, and does not move with what it rests on"));
   part.bodies.move(ball, still);
   CHECK_NOTHROW(part.rest.audit(part.clock.now));
   part.bodies[ball].entered = false;
