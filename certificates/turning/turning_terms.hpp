@@ -3,12 +3,15 @@
 
 #include "certificates/point_motion.hpp"
 #include "certificates/turning/turned_vector.hpp"
+#include "kds/arithmetic/exact.hpp"
+#include "kds/arithmetic/plain_number.hpp"
 #include "kds/polynomial.hpp"
 #include "kds/turning/turning_sum.hpp"
 
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 
 namespace kds::certificates {
 
@@ -67,11 +70,25 @@ void add_square(TurningSum<Order, Number>& f, const TurnedNumber<Number, Order>&
   }
 }
 
+/// Whether a part of a turned vector can be left out, as the cosine and the sine of a body that does not turn. Asked of
+/// exact numbers alone: of others a product takes no longer than the question.
+template <class Number>
+bool adds_nothing(const VectorOf<Number>& part) {
+  if constexpr (std::is_same_v<Number, Exact> || std::is_same_v<Number, PlainNumber>) {
+    return part[0].is_zero() && part[1].is_zero() && part[2].is_zero();
+  } else {
+    return false;
+  }
+}
+
 /// Adds a . b, of vectors that turn with the first and with the second spin.
 template <int Order, class Number>
 void add_product(TurningSum<Order, Number>& f, const TurnedVector<Number>& a, const TurnedVector<Number>& b) {
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) f.p[i][j].c[0] = f.p[i][j].c[0] + dot(a[i], b[j]);
+    if (adds_nothing(a[i])) continue;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!adds_nothing(b[j])) f.p[i][j].c[0] = f.p[i][j].c[0] + dot(a[i], b[j]);
+    }
   }
 }
 

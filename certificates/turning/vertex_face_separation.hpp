@@ -37,7 +37,9 @@ struct VertexFaceSeparation {
     const auto way = way_between<Number, Order>(b.path, a.path, epoch);
     TurningSum<Order, Number> f;
     add_product(f, turn_a(vector_of<Number>(vertex)), n);
-    for (std::size_t j = 0; j < 3; ++j) f.p[0][j] = f.p[0][j] + along(n[j] * turn_a.scale(), way);
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (!adds_nothing(n[j])) f.p[0][j] = f.p[0][j] + along(n[j] * turn_a.scale(), way);
+    }
     const Number height = dot(normal, vector_of<Number>(corners[0]));
     f.p[0][0].c[0] = f.p[0][0].c[0] - height * turn_a.scale() * turn_b.scale();
     return f;

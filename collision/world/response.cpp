@@ -106,7 +106,13 @@ void Engine<Motion>::take_up(BodySlot id, const Motion& motion) {
   if constexpr (turns<Motion>) {
     if (tumbling_.is_alone(id)) look_at(id);
   }
-  change_motion(id, tumbling_.has(id) ? tumbling_.take_up(id, motion, clock_.now) : motion);
+  if (!tumbling_.has(id)) return change_motion(id, motion);
+  Motion taken_up = tumbling_.take_up(id, motion, clock_.now);
+  // What does not turn goes on as given, from its start on: what is carried then keeps its place exactly.
+  if constexpr (turns<Motion>) {
+    if (taken_up.angular_velocity.isZero(0)) taken_up.path = motion.path;
+  }
+  change_motion(id, taken_up);
 }
 
 template <class Motion>

@@ -2,6 +2,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -29,8 +30,11 @@ Exact::Exact(double value) : Exact() {
   if (value == 0) return;
   int exponent = 0;
   const double fraction = std::frexp(value, &exponent);
-  mantissa().integer = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-  exponent_ = exponent - 53;
+  // Without its last zeros: products of short numbers stay short, and need no memory of their own.
+  const auto digits = static_cast<std::int64_t>(std::ldexp(fraction, 53));
+  const int zeros = std::countr_zero(static_cast<std::uint64_t>(digits));
+  mantissa().integer = digits / (std::int64_t{1} << zeros);
+  exponent_ = exponent - 53 + zeros;
 }
 
 Exact::Exact(Mantissa&& mantissa, int exponent) : exponent_(mantissa.integer.is_zero() ? 0 : exponent) {
@@ -87,6 +91,7 @@ Exact operator+(const Exact& a, const Exact& b) {
 Exact operator-(const Exact& a, const Exact& b) { return a + (-b); }
 
 Exact operator*(const Exact& a, const Exact& b) {
+  if (a.is_zero() || b.is_zero()) return {};
   return {Exact::Mantissa{a.mantissa().integer * b.mantissa().integer}, a.exponent_ + b.exponent_};
 }
 

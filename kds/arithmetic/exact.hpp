@@ -26,6 +26,7 @@ class Exact {
   ~Exact();
 
   int sign() const;
+  bool is_zero() const { return sign() == 0; }
 
   /// Nearest double or one of its neighbours; for approximations only.
   double approximate() const;

@@ -4,6 +4,7 @@
 #include "kds/arithmetic/ball.hpp"
 #include "kds/arithmetic/enclosure.hpp"
 #include "kds/arithmetic/exact.hpp"
+#include "kds/arithmetic/plain_number.hpp"
 #include "kds/certificate.hpp"
 #include "kds/certificate_hooks.hpp"
 #include "kds/turning/exact_zero.hpp"
@@ -77,9 +78,9 @@ inline thread_local TurningSignCounters turning_sign_counters;
 /// Sign of f, or of its derivative number `derivative`, at t itself; 0 only where it is zero. Exact. Precondition: t is
 /// finite, 0 <= derivative.
 ///
-/// The ladder: doubles with an error bound; double-doubles with an error bound; the exact test whether f(t) is zero
-/// (exact_zero.hpp); and where it is not, enclosures of twice as many digits each time, which come to an end for that
-/// reason.
+/// The ladder: doubles with an error bound; double-doubles with an error bound; coefficients in doubles, if these are
+/// exact and zero (plain_number.hpp); the exact test whether f(t) is zero (exact_zero.hpp); and where it is not,
+/// enclosures of twice as many digits each time, which come to an end for that reason.
 template <TurningCertificate C>
 int sign_at(const C& certificate, double t, int derivative = 0);
 
@@ -147,7 +148,30 @@ Ball<double> turning_value_in_doubles(const C& certificate, double t) {
   }
 }
 
-/// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one.
+/// What is referred to tells.
+template <int Degree, int Harmonics>
+bool plainly_vanishes(const TurningReference<Degree, Harmonics>& certificate) {
+  return certificate.plainly_vanishes();
+}
+template <int Degree, int Harmonics>
+Ball<DoubleDouble> extended_turning_value(const TurningReference<Degree, Harmonics>& certificate, double t) {
+  return certificate.extended_value(t);
+}
+
+/// Whether all coefficients of f are zero and doubles tell so: then it is zero at all times. That is most of what is.
+template <class C>
+bool plainly_vanishes(const C& certificate) {
+  const auto f = certificate.template turning_sum<PlainNumber, C::degree>(certificate.spins()[0].start);
+  for (const auto& row : f.p) {
+    for (const auto& polynomial : row) {
+      if (!is_known_zero(polynomial.c)) return false;
+    }
+  }
+  return true;
+}
+
+/// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one; zero without an error
+/// where it plainly is.
 template <class C>
 Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
   static_assert(RightTurningHooks<C>::checked);
@@ -159,6 +183,11 @@ Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
       });
     }
     if (certain_sign(value) != 0) return value;
+  }
+  if (plainly_vanishes(certificate)) {
+    ++turning_sign_counters.exact;
+    ++turning_sign_counters.zeros;
+    return {};
   }
   return turning_value<Ball<DoubleDouble>>(certificate, t);
 }
@@ -175,45 +204,37 @@ int enclosed_sign(const TurningSum<Degree, Exact, Harmonics>& f, const std::arra
   }
 }
 
-/// The last rungs.
+/// When the sign of a derivative of f is asked for: at a time, or just after it.
+enum class Instant : std::uint8_t { at, after };
+
 template <int Degree, int Harmonics>
-int exact_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
+int next_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative);
+
+/// The last rungs. The coefficients about t that tell that f is zero there also tell whether it is so at all times.
+template <int Degree, int Harmonics>
+int exact_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative,
+                       Instant instant) {
   ++turning_sign_counters.exact;
   const std::array<Spin, 2> spins = certificate.spins();
   const auto f = derived_sum<Exact>(certificate, t, derivative);
-  if (vanishes_at_epoch(f, relation_at(spins[0], spins[1], t, f.harmonics))) {
-    ++turning_sign_counters.zeros;
-    return 0;
-  }
-  return enclosed_sign(f, spins, t);
+  if (!vanishes_at_epoch(f, relation_at(spins[0], spins[1], t, f.harmonics))) return enclosed_sign(f, spins, t);
+  ++turning_sign_counters.zeros;
+  if (instant == Instant::at || vanishes_throughout(f, spins[0], spins[1])) return 0;
+  return next_turning_sign(certificate, t, derivative);
 }
 
 template <int Degree, int Harmonics>
 int general_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t) {
   const TurningSignCounters counters = turning_sign_counters;
   int sign = certain_sign(turning_value<Ball<DoubleDouble>>(certificate, t));
-  if (sign == 0) sign = exact_turning_sign(certificate, t, 0);
+  if (sign == 0) sign = exact_turning_sign(certificate, t, 0, Instant::at);
   turning_sign_counters = counters;
   return sign;
 }
 
-/// sign_at() of f where doubles do not tell, and of its derivatives.
-template <int Degree, int Harmonics>
-int longer_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
-  if (derivative > 0) {
-    const auto value = turning_derivative<Ball<double>>(certificate, t, derivative);
-    if (const int s = certain_sign(value)) return s;
-    if (value.is_zero()) return 0;
-  }
-  ++turning_sign_counters.extended;
-  const auto value = derivative == 0 ? extended_turning_value(certificate, t)
-                                     : turning_derivative<Ball<DoubleDouble>>(certificate, t, derivative);
-  if (const int s = certain_sign(value)) return s;
-  return value.is_zero() ? 0 : exact_turning_sign(certificate, t, derivative);
-}
-
 template <int Degree, int Harmonics>
 bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int derivative) {
+  if (derivative == 0 && plainly_vanishes(certificate)) return true;
   const std::array<Spin, 2> spins = certificate.spins();
   return vanishes_throughout(derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
 }
@@ -221,9 +242,32 @@ bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int deriva
 /// sign_after() where the derivative itself is zero at t.
 template <int Degree, int Harmonics>
 int turning_sign_after_zero(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
-  if (vanishes(certificate, derivative)) return 0;
+  return vanishes(certificate, derivative) ? 0 : next_turning_sign(certificate, t, derivative);
+}
+
+/// sign_at() or sign_after() of f where doubles do not tell, and of its derivatives.
+template <int Degree, int Harmonics>
+int longer_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative,
+                        Instant instant) {
+  const auto zero = [&] { return instant == Instant::at ? 0 : turning_sign_after_zero(certificate, t, derivative); };
+  if (derivative > 0) {
+    const auto value = turning_derivative<Ball<double>>(certificate, t, derivative);
+    if (const int s = certain_sign(value)) return s;
+    if (value.is_zero()) return zero();
+  }
+  ++turning_sign_counters.extended;
+  const auto value = derivative == 0 ? extended_turning_value(certificate, t)
+                                     : turning_derivative<Ball<DoubleDouble>>(certificate, t, derivative);
+  if (const int s = certain_sign(value)) return s;
+  return value.is_zero() ? zero() : exact_turning_sign(certificate, t, derivative, instant);
+}
+
+/// The sign just after t of a derivative that is zero at t, but not at all times: that of the first of the next ones
+/// that is not zero there.
+template <int Degree, int Harmonics>
+int next_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
   for (int k = derivative + 1;; ++k) {
-    if (const int s = longer_turning_sign(certificate, t, k)) return s;
+    if (const int s = longer_turning_sign(certificate, t, k, Instant::at)) return s;
   }
 }
 
@@ -236,7 +280,7 @@ int sign_at(const C& certificate, double t, int derivative) {
     if (const int s = certain_sign(value)) return s;
     if (value.is_zero()) return 0;
   }
-  return detail::longer_turning_sign(TurningReference(certificate), t, derivative);
+  return detail::longer_turning_sign(TurningReference(certificate), t, derivative, detail::Instant::at);
 }
 
 template <TurningCertificate C>
@@ -246,14 +290,18 @@ bool vanishes(const C& certificate, int derivative) {
 
 template <TurningCertificate C>
 int sign_after(const C& certificate, double t, int derivative) {
-  if (const int s = sign_at(certificate, t, derivative)) return s;
-  return detail::turning_sign_after_zero(TurningReference(certificate), t, derivative);
+  if (derivative == 0) {
+    const Ball<double> value = detail::turning_value_in_doubles(certificate, t);
+    if (const int s = certain_sign(value)) return s;
+    if (value.is_zero()) return detail::turning_sign_after_zero(TurningReference(certificate), t, derivative);
+  }
+  return detail::longer_turning_sign(TurningReference(certificate), t, derivative, detail::Instant::after);
 }
 
-#define KDS_TURNING_SIGNS(prefix, ...)                                                           \
-  prefix int detail::general_turning_sign(const TurningReference<__VA_ARGS__>&, double);         \
-  prefix int detail::longer_turning_sign(const TurningReference<__VA_ARGS__>&, double, int);     \
-  prefix int detail::turning_sign_after_zero(const TurningReference<__VA_ARGS__>&, double, int); \
+#define KDS_TURNING_SIGNS(prefix, ...)                                                                \
+  prefix int detail::general_turning_sign(const TurningReference<__VA_ARGS__>&, double);              \
+  prefix int detail::longer_turning_sign(const TurningReference<__VA_ARGS__>&, double, int, Instant); \
+  prefix int detail::turning_sign_after_zero(const TurningReference<__VA_ARGS__>&, double, int);      \
   prefix bool detail::vanishes(const TurningReference<__VA_ARGS__>&, int);
 #define KDS_TURNING_SIGNS_ELSEWHERE(...) KDS_TURNING_SIGNS(extern template, __VA_ARGS__)
 KDS_FOR_EACH_TURNING_SUM(KDS_TURNING_SIGNS_ELSEWHERE)

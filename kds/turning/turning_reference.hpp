@@ -25,6 +25,8 @@ template <class C>
 Ball<double> turning_value_in_doubles(const C& certificate, double t);
 template <class C>
 Ball<DoubleDouble> extended_turning_value(const C& certificate, double t);
+template <class C>
+bool plainly_vanishes(const C& certificate);
 
 }  // namespace detail
 
@@ -61,6 +63,7 @@ class TurningReference {
   }
   Ball<double> quick_value(double t) const { return functions_->quick_value(certificate_, t); }
   Ball<DoubleDouble> extended_value(double t) const { return functions_->extended_value(certificate_, t); }
+  bool plainly_vanishes() const { return functions_->plainly_vanishes(certificate_); }
 
  private:
   template <class Number, int Order>
@@ -73,6 +76,7 @@ class TurningReference {
     SumFunction<Exact, Degree> exact;
     Ball<double> (*quick_value)(const void*, double t);
     Ball<DoubleDouble> (*extended_value)(const void*, double t);
+    bool (*plainly_vanishes)(const void*);
   };
 
   template <class C, class Number, int Order>
@@ -87,6 +91,10 @@ class TurningReference {
   static Ball<DoubleDouble> extended_value_of(const void* certificate, double t) {
     return detail::extended_turning_value(*static_cast<const C*>(certificate), t);
   }
+  template <class C>
+  static bool plainly_vanishes_of(const void* certificate) {
+    return detail::plainly_vanishes(*static_cast<const C*>(certificate));
+  }
 
   template <class C>
   static constexpr Functions functions_of = {sum_of<C, Ball<double>, 0>,
@@ -95,7 +103,8 @@ class TurningReference {
                                              sum_of<C, Ball<DoubleDouble>, Degree>,
                                              sum_of<C, Exact, Degree>,
                                              quick_value_of<C>,
-                                             extended_value_of<C>};
+                                             extended_value_of<C>,
+                                             plainly_vanishes_of<C>};
 
   const void* certificate_;
   const Functions* functions_;

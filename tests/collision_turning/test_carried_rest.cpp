@@ -1,4 +1,4 @@
-// Bodies that turn come to rest on what glides: belts, lifts and carts.
+// Bodies that turn come to rest on what glides or accelerates: belts, lifts and carts.
 #include "kds/framework/snapshot.hpp"
 
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,20 @@ Body moving(Body body, const Vector3d& velocity) {
   return body;
 }
 
+Body accelerated(Body body, const Vector3d& acceleration) {
+  body.motion[0].path.coefficients[2] = 0.5 * acceleration;
+  return body;
+}
+
+/// Whether a body does not turn, and its path is that of another one, but for its place.
+bool moves_as(const Turning& world, BodyId id, BodyId other) {
+  const auto &motion = world.motion(id), &carrier = world.motion(other);
+  const auto &path = motion.path.coefficients, &expected = carrier.path.coefficients;
+  const bool accelerates = !expected[2].isZero(0);
+  return path[1] == expected[1] && path[2] == expected[2] &&
+         (!accelerates || motion.path.start == carrier.path.start) && motion.angular_velocity.isZero(0);
+}
+
 bool moves_at(const Turning& world, BodyId id, const Vector3d& velocity) {
   const auto& motion = world.motion(id);
   return motion.path.coefficients[1] == velocity && motion.path.coefficients[2].isZero(0) &&
@@ -36,9 +51,9 @@ bool moves_at(const Turning& world, BodyId id, const Vector3d& velocity) {
 Vector3d place(const Turning& world, BodyId id) { return world.motion(id).path.position(world.now()); }
 
 /// A stack of three boxes above a body whose upper side is at the height 0 at first.
-void add_stack(Turning& world) {
+void add_stack(Turning& world, const Vector3d& velocity = Vector3d::Zero()) {
   for (int i = 0; i < 3; ++i) {
-    world.add_body(body(Box{Vector3d(0.5, 0.5, 0.25)}, {0.02 * (i % 2), 0, 0.55 * i + 0.35}));
+    world.add_body(moving(body(Box{Vector3d(0.5, 0.5, 0.25)}, {0.02 * (i % 2), 0, 0.55 * i + 0.35}), velocity));
   }
 }
 
@@ -113,24 +128,130 @@ TEST_CASE("a lift carries what rests on it, and wakes it where it stops", "[rest
   }
 }
 
-TEST_CASE("a cart that accelerates or turns lets nothing rest", "[rest]") {
-  const bool turns = GENERATE(false, true);
-  CAPTURE(turns);
+TEST_CASE("a turntable lets nothing rest, and carries all the same", "[rest]") {
   Log log;
   Turning world(options(), &log);
-  Body cart = ground();
-  if (turns) {
-    cart.motion[0].angular_velocity = {0, 0, 0.125};
-  } else {
-    cart.motion[0].path.coefficients[2] = {0.25, 0, 0};
-  }
-  world.add_body(cart);
+  Body table = ground();
+  table.motion[0].angular_velocity = {0, 0, 0.125};
+  world.add_body(table);
   add_stack(world);
   world.advance_to(0.625);
   CHECK(log.rested == 0);
   CHECK(log.passed == 0);
-  CHECK(place(world, 3)[2] > 1.2);  // It is carried all the same, in shortest flights.
-  if (!turns) CHECK(std::abs(place(world, 1)[0] - place(world, 0)[0]) < 0.02);
+  CHECK(place(world, 3)[2] > 1.2);  // in shortest flights
+}
+
+TEST_CASE("a lift that speeds up and a cart that brakes carry what rests on them", "[rest]") {
+  struct Case {
+    Vector3d velocity, acceleration;
+  };
+  for (const Case& c : {Case{{0, 0, 0}, {0, 0, 4}}, Case{{0, 0, 1}, {0, 0, -6}}, Case{{6, -1, 0}, {-2, 0.5, 0}},
+                        Case{{0.3, 0, 0.2}, {1, 1, 2}}}) {
+    CAPTURE(c.velocity.transpose(), c.acceleration.transpose());
+    std::vector<std::string> expected;
+    for (const auto kind : {BroadPhaseKind::automatic, BroadPhaseKind::all_pairs, BroadPhaseKind::kinetic_sap}) {
+      for (const bool saves : {false, true}) {
+        if (saves && kind != BroadPhaseKind::automatic) continue;
+        Log log;
+        auto world = std::make_unique<Turning>(options(kind), &log);
+        world->add_body(accelerated(moving(ground(), c.velocity), c.acceleration));
+        add_stack(*world, c.velocity);
+        for (int k = 1; k <= 32; ++k) {
+          world->advance_to(k / 16.0);
+          if (!saves) continue;
+          world->audit();
+          const auto image = save(*world);
+          world = std::make_unique<Turning>(options(kind), &log);
+          restore(image, *world);
+        }
+        for (BodyId i = 0; i < 3; ++i) CHECK(world->resting(i, i + 1));
+        for (BodyId i = 1; i <= 3; ++i) CHECK(moves_as(*world, i, 0));
+        CHECK(log.passed == 0);
+        CHECK(log.contacts < 20000);
+        world->audit();
+        // No energy is left, seen from what carries them, and nothing has sunk in: the heights are those of the boxes.
+        for (BodyId i = 1; i <= 3; ++i) {
+          const Vector3d above = place(*world, i) - place(*world, 0);
+          CHECK(above[2] > 1 + 0.25 + 0.5 * static_cast<double>(i - 1) - 1e-12);
+          CHECK(above[2] < 1 + 0.25 + 0.5 * static_cast<double>(i - 1) + 12 * static_cast<double>(i) * reach);
+        }
+        // From then on nothing happens, and the place on the carrier is exactly the same.
+        const int contacts = log.contacts;
+        const Vector3d from_carrier = world->motion(3).path.coefficients[0] - world->motion(0).path.coefficients[0];
+        if (kind == BroadPhaseKind::automatic) {
+          world->advance_to(60);
+          CHECK(moves_as(*world, 3, 0));
+          CHECK(world->motion(3).path.coefficients[0] - world->motion(0).path.coefficients[0] == from_carrier);
+        }
+        CHECK(log.contacts == contacts);
+        if (expected.empty()) expected = log.lines;
+        CHECK(log.lines == expected);
+      }
+    }
+  }
+}
+
+TEST_CASE("what is carried wakes where its carrier ceases to accelerate, or does so otherwise", "[rest]") {
+  // Up with 4 m/s^2 for 2 s, then with the speed reached for 1 s, then it brakes with 4 m/s^2 until it stands.
+  Log log;
+  Turning world(options(), &log);
+  Body lift = accelerated(ground(), {0, 0, 4});
+  const auto piece = [&](double start, double height, double speed, double acceleration) {
+    RigidMotion<2> motion = lift.motion[0];
+    motion.path.start = start;
+    motion.path.coefficients = {Vector3d(0, 0, height - 1), Vector3d(0, 0, speed), Vector3d(0, 0, acceleration / 2)};
+    lift.motion.push_back(motion);
+  };
+  piece(2, 8, 8, 0), piece(3, 16, 8, -4), piece(5, 24, 0, 0);
+  world.add_body(lift);
+  add_stack(world);
+  int most = 0;
+  for (const double until : {2.0, 3.0, 5.0, 8.0}) {
+    world.advance_to(until - 0.0625);
+    CAPTURE(until);
+    for (BodyId i = 0; i < 3; ++i) CHECK(world.resting(i, i + 1));
+    for (BodyId i = 1; i <= 3; ++i) CHECK(moves_as(world, i, 0));
+    CHECK(world.free_motion(1).path.coefficients[2] == Vector3d(0, 0, -gravity / 2));
+    CHECK((world.free_motion(1).path.coefficients[1] - world.motion(0).path.velocity(world.now())).norm() < 1e-12);
+    world.audit();
+    world.advance_to(until);
+    CHECK(world.resting(0, 1) == (until == 8));
+    most = std::max(most, log.contacts);
+  }
+  CHECK(most < 60000);
+  CHECK(log.passed == 0);
+  for (BodyId i = 1; i <= 3; ++i) CHECK(still(world, i));
+  CHECK(std::abs(place(world, 1)[2] - 24.25) < 3 * reach);
+}
+
+TEST_CASE("what friction cannot hold slides off a cart, and what falls slower than a lift does not rest on it",
+          "[rest]") {
+  // Friction holds up to 0.5 x 10 m/s^2.
+  for (const double acceleration : {4.0, 6.0}) {
+    Log log;
+    Turning world(options(), &log);
+    world.add_body(accelerated(ground(), {acceleration, 0, 0}));
+    const BodyId box = world.add_body(body(Box{Vector3d(0.5, 0.5, 0.125)}, {0, 0, 0.135}));
+    world.advance_to(1);
+    CAPTURE(acceleration);
+    CHECK(world.resting(0, box) == (acceleration < 5));
+    if (acceleration > 5) {
+      CHECK(log.rested == 0);
+      // It is drawn along with 5 m/s^2, but for what it slides while it falls at first.
+      CHECK(std::abs(place(world, box)[0] - 2.5) < 0.25);
+    }
+    CHECK(log.passed == 0);
+  }
+  for (const double acceleration : {-9.0, -10.0, -11.0}) {
+    Log log;
+    Turning world(options(), &log);
+    world.add_body(accelerated(ground(), {0, 0, acceleration}));
+    const BodyId box = world.add_body(body(Box{Vector3d(0.5, 0.5, 0.125)}, {0, 0, 0.125}));
+    world.advance_to(1);
+    CAPTURE(acceleration);
+    CHECK(world.resting(0, box) == (acceleration > -10));
+    CHECK(log.passed == 0);
+  }
 }
 
 TEST_CASE("on two belts of different speeds nothing rests, on two of the same it does", "[rest]") {

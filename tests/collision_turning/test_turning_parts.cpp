@@ -300,7 +300,8 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves otherw
   auto moves = still;
   moves.path.coefficients[1] = Vector3d(0, 1, 0);
   part.bodies.move(ball, moves);
-  CHECK_THROWS_WITH(part.rest.audit(part.clock.now), Contains("body 1: it rests, and does not move with what it rests on"));
+  CHECK_THROWS_WITH(part.rest.audit(part.clock.now),
+                    Contains("body 1: it rests, and does not move with what it rests on"));
   part.bodies.move(ball, still);
   CHECK_NOTHROW(part.rest.audit(part.clock.now));
   part.bodies[ball].entered = false;
@@ -312,9 +313,9 @@ TEST_CASE("Rest of bodies that turn: the audit finds what rests and moves otherw
   CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
                     Contains("rests on nothing"));
   image = part.rest.image();
-  image.carried_at[ball][0] = std::numeric_limits<double>::infinity();
+  image.carriers[ball].velocity[0] = std::numeric_limits<double>::infinity();
   CHECK_THROWS_WITH(image.check(part.bodies.image(), part.clock.now, {.response = Response::elastic}),
-                    Contains("the velocity of what carries it is not finite"));
+                    Contains("the motion of what carries it is not finite"));
 }
 
 }  // namespace kds::collision::test_turning_parts

@@ -1,6 +1,7 @@
 // Two triangles that turn: how long they are surely apart, three corners at a time.
 #pragma once
 
+#include "certificates/positive_parabola.hpp"
 #include "collision/narrow_phase/turning/hulls.hpp"
 #include "collision/narrow_phase/turning/jets.hpp"
 #include "collision/narrow_phase/turning/three_vectors.hpp"
@@ -106,6 +107,43 @@ class TriangleGap : private TrianglesSeen<Degree> {
     double wait = positive_for(gap(near_a, near_b), bounds.third, stretch);
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t j = 0; j < 3; ++j) wait = std::min(wait, positive_for(gap(i, j), bounds.third, wait));
+    }
+    return wait;
+  }
+
+  /// The same, along a direction that stays as it is in a: for bodies that turn nearly alike, of which open_for() does
+  /// not know that one hardly moves as the other sees it. `all`: what there is to look at.
+  ///
+  /// Seen from a, which turns with the rate W, the way w has the velocity d = w' - W x w and the acceleration e = w'' -
+  /// 2 W x w' + W x (W x w), of which |e'| <= 2 |W| |w''| + |W|^2 |w'|. With V the difference of the two rates, a point
+  /// x of b has besides V x x and at most |V| (|W| + |W_b|) |x|. Roundings: those of PairFrame, of each of these.
+  double open_seen_from_a(double stretch, double all) const {
+    constexpr double rounding = PairFrame<Degree>::rounding;
+    const VectorJet& way = view_.way;
+    const Eigen::Vector3d &spin = view_.spin_a, apart = view_.spin_b - spin;
+    const double rate = view_.rate_a, rates = rate + view_.rate_b, radius = hull_b_.radius;
+    const double speed = norm(way.rate) + view_.rate_error, bend = norm(way.bend), far = norm(way.value);
+    const double until = speed > 0 || bend > 0 ? stretch : all;
+    const double slower = norm(apart) + 0x1p-50 * rates;
+
+    const Eigen::Vector3d centre = cross(spin, way.value);
+    const Eigen::Vector3d acceleration = way.bend - 2 * cross(spin, way.rate) + cross(spin, centre);
+    const double change = speed > 0 || bend > 0 ? until * rate * (2 * bend + rate * (speed + until * bend)) : 0;
+    const double most = norm(acceleration) + change + slower * rates * radius +
+                        rounding * (bend + rate * (2 * speed + rate * far)) +
+                        rate * (2 * view_.rate_error + rate * view_.way_error);
+    const double rate_rounding =
+        rounding * (speed + rate * far + rates * radius) + view_.rate_error + rate * view_.way_error;
+    const double value_rounding = rounding * (far + hull_a_.radius + radius) + view_.way_error;
+
+    const Eigen::Vector3d n = direction().value;
+    const double nearest = Seen::most(dots(n, a_)) + value_rounding;
+    const double along = dot(n, way.rate - centre) - rate_rounding;
+    const FourDoubles places = dots(n, b_), rates_of_b = dots(cross(n, apart), b_);
+    double wait = until;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double gap = dot(n, way.value) + places[i] - nearest;
+      wait = std::min(wait, certificates::positive_for(gap, along + rates_of_b[i], -0.5 * (1 + 0x1p-30) * most));
     }
     return wait;
   }

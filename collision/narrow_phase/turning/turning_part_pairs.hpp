@@ -90,7 +90,7 @@ class TurningPartPairs : public ListOfPartPairs {
     if (!(rate > 0)) return dot(n, ball.centre);
     const Eigen::Vector3d axis = spin / rate;
     const double cosine = dot(n, axis);
-    const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+    const double sine = norm(cross(n, axis));  // 1 - cosine^2 loses small angles
     return dot(axis, ball.centre) * cosine + norm(cross(axis, ball.centre)) * sine;
   }
 

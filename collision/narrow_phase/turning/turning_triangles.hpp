@@ -74,9 +74,10 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     if (this->slack() > 0) return Base::apart_until(view, horizon);
     const TriangleGap<Degree> gap(view, this->hull_a_, this->hull_b_);
     if (!(gap.width() > this->error(view))) return view.time;
-    const double stretch =
-        view.stretch(this->hull_a_.radius + this->hull_b_.radius, (horizon - view.time) * (1 + 0x1p-40));
-    const double wait = gap.open_for(stretch);
+    const double all = (horizon - view.time) * (1 + 0x1p-40);
+    const double stretch = view.stretch(this->hull_a_.radius + this->hull_b_.radius, all);
+    double wait = gap.open_for(stretch);
+    if (wait < stretch && view.turn_alike()) wait = std::max(wait, gap.open_seen_from_a(stretch, all));
     return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
   }
 

@@ -24,6 +24,13 @@ struct TurningView : PairFrame<Degree> {
   Eigen::Vector3d seen_from_a(const Eigen::Vector3d& x) const {
     return {dot(this->axis_a(0), x), dot(this->axis_a(1), x), dot(this->axis_a(2), x)};
   }
+  /// Whether both turn, and hardly against each other.
+  bool turn_alike() const {
+    constexpr double part = 0x1p-4;
+    const double rates = part * (this->rate_a + this->rate_b);
+    const Eigen::Vector3d apart = this->spin_b - this->spin_a;
+    return rates > 0 && dot(apart, apart) <= rates * rates;
+  }
 
  private:
   /// In one fixed order.

@@ -7,8 +7,6 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include <algorithm>
-
 namespace kds::collision::turning_rest {
 
 using Eigen::Quaterniond;
@@ -44,29 +42,6 @@ class BodyFrame {
 template <class Motion>
 double surface_speed(const Motion& motion, const Vector3d& velocity, double radius, double t) {
   return norm(motion.path.velocity(t) - velocity) + norm(motion.angular_velocity) * radius;
-}
-
-/// Whether a body does not turn, and stands still or moves at a constant velocity.
-template <class Motion>
-bool glides(const Motion& motion) {
-  const auto& path = motion.path.coefficients;
-  return motion.angular_velocity.isZero(0) &&
-         std::all_of(path.begin() + 2, path.end(), [](const Vector3d& x) { return x.isZero(0); });
-}
-template <class Motion>
-bool glides_with(const Motion& motion, const Vector3d& velocity) {
-  return glides(motion) && motion.path.coefficients[1] == velocity;
-}
-
-/// From a time on a body does not turn, and moves at a velocity.
-template <class Motion>
-Motion gliding_with(const Motion& motion, const Vector3d& velocity, double t) {
-  Motion result = motion.restarted(t);
-  auto& path = result.path.coefficients;
-  path[1] = velocity;
-  std::fill(path.begin() + 2, path.end(), Vector3d::Zero());
-  result.angular_velocity = Vector3d::Zero();
-  return result;
 }
 
 }  // namespace kds::collision::turning_rest

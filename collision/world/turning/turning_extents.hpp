@@ -55,6 +55,15 @@ bool take_corners(const PlacedShape& shape, const Take& take) {
 /// Whether the volume of a body with this shape is the body of revolution of points around a hull or a mesh.
 inline bool takes_corners(const Shape& shape) { return std::holds_alternative<ConvexHull>(shape) || has_mesh(shape); }
 
+/// Of the angle between a unit vector and an axis: where that is small, from the two other coordinates, since 1 - n_d^2
+/// loses angles below 1e-8.
+inline double sine_of(const Eigen::Vector3d& n, int d) {
+  const double square = 1 - n[d] * n[d];
+  if (square > 0x1p-10) return std::sqrt(square);
+  const double x = n[(d + 1) % 3], y = n[(d + 2) % 3];
+  return std::sqrt(x * x + y * y);
+}
+
 /// The half extents of a box along the axes of the world that holds a body however far it turns, rounded outward.
 ///
 /// A point of the body keeps its height c along the axis n of the turning, and its distance rho from it. So along an
@@ -90,8 +99,7 @@ Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificate
     const double height = std::abs(dot(n, x));
     const double distance = norm(cross(n, x));
     for (int d = 0; d < 3; ++d) {
-      half_extents[d] =
-          std::max(half_extents[d], height * std::abs(n[d]) + distance * std::sqrt(std::max(0.0, 1 - n[d] * n[d])));
+      half_extents[d] = std::max(half_extents[d], height * std::abs(n[d]) + distance * sine_of(n, d));
     }
   };
   if (edges == Eigen::Vector3d::Zero()) {

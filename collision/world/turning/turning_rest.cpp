@@ -97,9 +97,9 @@ bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
   if (resting_ == 0 || !(carries(a) || carries(b))) return false;
   // What touches a resting body gently may come to lie on it. Until that is known the body goes on resting.
   const double g = scale({a, b}).acceleration;
-  const std::optional<Vector3d> velocity = support_velocity(a, b);
+  const std::optional<Carrier> carrier = common_carrier(a, b);
   const bool gentle = std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 && !bodies_.fixed(a) &&
-                      !bodies_.fixed(b) && velocity && calm(a, g, *velocity) && calm(b, g, *velocity);
+                      !bodies_.fixed(b) && carrier && calm(a, g, *carrier) && calm(b, g, *carrier);
   if (gentle) return false;
   if (carries(a) != carries(b) && !bodies_.fixed(a) && !bodies_.fixed(b)) return true;
   if (carries(a)) wake(a);
@@ -161,10 +161,23 @@ void TurningRest<Motion>::solve() {
   }
 }
 
-/// The magnitude of the acceleration that a body has if nothing touches it.
+/// How what a body lies on moves; it stands still if the body lies on nothing that is known.
+template <class Motion>
+Carrier TurningRest<Motion>::carrier(BodySlot slot) const {
+  return slot < of_.size() && !of_[slot].others.empty() ? of_[slot].carrier : Carrier{};
+}
+
+/// Half of the acceleration that a body has if nothing touches it, seen from what it lies on.
+template <class Motion>
+Vector3d TurningRest<Motion>::half_weight(BodySlot slot) const {
+  return bodies_.free_acceleration(slot) - carrier(slot).half_acceleration;
+}
+
+/// The acceleration by which flights are as fast as they are: that of the weight, or seen from what the body lies on,
+/// whichever is greater.
 template <class Motion>
 double TurningRest<Motion>::acceleration(BodySlot slot) const {
-  return 2 * norm(bodies_.free_acceleration(slot));
+  return 2 * std::max(norm(bodies_.free_acceleration(slot)), norm(half_weight(slot)));
 }
 
 template <class Motion>
@@ -190,31 +203,31 @@ double TurningRest<Motion>::calm_speed(const Scale& scale) const {
   return std::sqrt(calm_energy * scale.acceleration * reach(scale));
 }
 
-/// The velocity of what two bodies that touch lie on: of the fixed one of them, and of what the others lie on that have
-/// touched something already. Nothing if these differ, or if a fixed body does not glide; zero if there are none.
+/// How that moves what two bodies that touch lie on: the fixed one of them, and what the others lie on that have
+/// touched something already. Nothing if these move differently, or if a fixed body turns; it stands still if there are
+/// none.
 template <class Motion>
-std::optional<Vector3d> TurningRest<Motion>::support_velocity(BodySlot a, BodySlot b) const {
-  std::optional<Vector3d> found;
+std::optional<Carrier> TurningRest<Motion>::common_carrier(BodySlot a, BodySlot b) const {
+  std::optional<Carrier> found;
   for (const BodySlot slot : {a, b}) {
-    const Motion& motion = bodies_.motion(slot);
     const bool fixed = bodies_.fixed(slot);
-    if (fixed && !glides(motion)) return std::nullopt;
     if (!fixed && (slot >= of_.size() || of_[slot].others.empty())) continue;
-    const Vector3d& velocity = fixed ? motion.path.coefficients[1] : of_[slot].carried_at;
-    if (found && *found != velocity) return std::nullopt;
-    found = velocity;
+    const std::optional<Carrier> carrier = fixed ? carrier_of(bodies_.motion(slot)) : of_[slot].carrier;
+    if (!carrier || (found && !(*found == *carrier))) return std::nullopt;
+    found = carrier;
   }
-  return found ? found : Vector3d(Vector3d::Zero());
+  return found ? found : Carrier{};
 }
 
 template <class Motion>
-bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Vector3d& support_velocity) const {
+bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Carrier& carrier) const {
   const Motion& motion = bodies_.motion(slot);
-  if (bodies_.fixed(slot)) return glides_with(motion, support_velocity);
+  if (bodies_.fixed(slot)) return moves_with(motion, carrier);
   const Scale scale{acceleration, bodies_[slot].bounding_radius};
   const auto others = slot < of_.size() ? static_cast<double>(of_[slot].others.size()) : 0;
   const double driven = std::clamp(others / calm_neighbours, 1.0, most_driven);
-  return surface_speed(motion, support_velocity, scale.size, clock_.now) <= driven * calm_speed(scale);
+  const Vector3d velocity = carrier.velocity_at(clock_.now);
+  return surface_speed(motion, velocity, scale.size, clock_.now) <= driven * calm_speed(scale);
 }
 
 /// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
@@ -252,9 +265,9 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
   if constexpr (Motion::degree < 2) return false;  // nothing presses bodies together
   const double g = scale({a, b}).acceleration;
   const double t = clock_.now;
-  const std::optional<Vector3d> velocity = support_velocity(a, b);
-  if (!(velocity && g > 0 && std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 && calm(a, g, *velocity) &&
-        calm(b, g, *velocity))) {
+  const std::optional<Carrier> carrier = common_carrier(a, b);
+  if (!(carrier && g > 0 && std::min(bodies_[a].restitution, bodies_[b].restitution) < 1 && calm(a, g, *carrier) &&
+        calm(b, g, *carrier))) {
     for (const BodySlot slot : {a, b}) {
       if (slot >= of_.size() || bodies_.fixed(slot) || carries(slot)) continue;
       erase_all(slot);
@@ -268,7 +281,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
   for (const BodySlot slot : {a, b}) {
     if (bodies_.fixed(slot) || carries(slot)) continue;
     Member& body = member(slot);
-    body.carried_at = *velocity;
+    body.carrier = *carrier;
     body.since = std::min(body.since, t);
     long_enough = long_enough && t - std::max(body.since, body.looked) >= calm_flights * flight_;
     patient = patient && t - body.since >= part_flights * flight_;
@@ -287,8 +300,8 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
   for (const BodySlot slot : held.bodies) of_[slot].seen = walks_;
   const auto stops = [&](BodySlot slot) { return bodies_.fixed(slot) || of_[slot].seen == walks_; };
   if (stops(a) != stops(b)) {  // It is put off where the other would move into the one that stops.
-    const Motion motion_a = stops(a) ? gliding_with(bodies_.motion(a), *velocity, t) : bodies_.motion(a);
-    const Motion motion_b = stops(b) ? gliding_with(bodies_.motion(b), *velocity, t) : bodies_.motion(b);
+    const Motion motion_a = stops(a) ? carried_by(*carrier, bodies_.motion(a), t) : bodies_.motion(a);
+    const Motion motion_b = stops(b) ? carried_by(*carrier, bodies_.motion(b), t) : bodies_.motion(b);
     const PointRates<Motion::degree> rates(motion_a, motion_b, t);
     if (dot(contact.normal, rates.velocity(contact.point)) < 0) {
       look(a), look(b);
@@ -315,7 +328,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
 template <class Motion>
 bool TurningRest<Motion>::ready(BodySlot slot, double acceleration) const {
   return of_[slot].rests ||
-         (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, acceleration, of_[slot].carried_at));
+         (clock_.now - of_[slot].since >= calm_flights * flight_ && calm(slot, acceleration, of_[slot].carrier));
 }
 
 template <class Motion>
@@ -342,7 +355,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     of_[slot].rests = true;
     of_[slot].ignored = {};
     of_[slot].since = never;
-    listener_.take_up(slot, gliding_with(bodies_.motion(slot), of_[slot].carried_at, t));
+    listener_.take_up(slot, carried_by(of_[slot].carrier, bodies_.motion(slot), t));
   }
 }
 
@@ -354,10 +367,10 @@ void TurningRest<Motion>::audit(double) const {
   };
   std::size_t resting = 0;
   for (const auto& [key, pair] : pairs_) {
-    const Vector3d& velocity = of_[bodies_.fixed(key.first) ? key.second : key.first].carried_at;
+    const Carrier& carrier = of_[bodies_.fixed(key.first) ? key.second : key.first].carrier;
     for (const BodySlot slot : {key.first, key.second}) {
       need(bodies_.entered(slot), slot, "it rests on another, and is not there");
-      need(!pair.rests || glides_with(bodies_.motion(slot), velocity), slot,
+      need(!pair.rests || moves_with(bodies_.motion(slot), carrier), slot,
            "it rests, and does not move with what it rests on");
       need(!pair.rests || of_[slot].rests || bodies_.fixed(slot), slot, "it rests on another, and is awake");
     }

@@ -9,6 +9,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting_contact.hpp"
+#include "collision/world/turning/carrier.hpp"
 #include "collision/world/turning/collapse.hpp"
 #include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
@@ -65,13 +66,14 @@ void archive_members(Archive& archive, LyingPair& pair) {
 ///
 /// Bodies that are pressed together make flights of WorldOptions::shortest_flight, again and again. A body is *calm*
 /// while no point of it is faster than such flights make it, seen from the fixed body that it lies on, directly or
-/// through others: that may glide, as a belt or a lift does. Where calm bodies touch is noted. A group is all bodies
-/// that are linked by such places, down to fixed ones. When all bodies of a group have been calm for some flights, and
-/// forces at these places within the cones of friction hold them all (static_balance.hpp), they come to rest: from then
-/// on they move with those fixed bodies, mostly not at all, and cost nothing. Bodies of a group that are held without
-/// its other bodies come to rest after a while even if those move. An impact wakes the bodies that it moves, and those
-/// that they have held; a change of a body, or of a support, wakes the whole group. A calm body wakes nothing that it
-/// touches: if forces hold it too, it comes to rest as well, and if not, those bodies wake that cannot carry it.
+/// through others: that may move as a belt or a lift does, at a constant velocity or acceleration. Where calm bodies
+/// touch is noted. A group is all bodies that are linked by such places, down to fixed ones. When all bodies of a group
+/// have been calm for some flights, and forces at these places within the cones of friction hold them all
+/// (static_balance.hpp), they come to rest: from then on they move with those fixed bodies, mostly not at all, and cost
+/// nothing. Bodies of a group that are held without its other bodies come to rest after a while even if those move. An
+/// impact wakes the bodies that it moves, and those that they have held; a change of a body, or of a support, wakes the
+/// whole group. A calm body wakes nothing that it touches: if forces hold it too, it comes to rest as well, and if not,
+/// those bodies wake that cannot carry it.
 ///
 /// This part of World owns its state. It reads the bodies, and tells its listener what follows. All of it is a function
 /// of contacts and edits, and does not depend on the broad phase, windows or snapshots.
@@ -171,14 +173,14 @@ class TurningRest {
     std::vector<double> looked;
     std::vector<char> rests;
     std::vector<Ignored> ignored;
-    std::vector<Eigen::Vector3d> carried_at;  ///< by body
+    std::vector<turning_rest::Carrier> carriers;  ///< by body
     std::vector<BodySlot> woken;
     std::vector<detail::Blow> blows;  ///< in the order of their times
 
     template <class Archive>
     void archive(Archive& archive) {
       archive(since, looked, rests, ignored, woken);
-      archive.each(carried_at, [&](Eigen::Vector3d& velocity) { image::vector(archive, velocity); });
+      archive.each(carriers, [&](turning_rest::Carrier& carrier) { archive(carrier); });
       archive.each(pairs, [&](One& one) { archive(one.a, one.b, one.pair); });
       archive.each(blows, [&](detail::Blow& blow) { archive(blow); });
     }
@@ -199,8 +201,8 @@ class TurningRest {
     double looked = -never;        ///< s; when its group was last found not to be at rest
     bool rests = false;
     Ignored ignored;
-    Eigen::Vector3d carried_at = Eigen::Vector3d::Zero();  ///< if there are others: the velocity of what they lie on
-    std::uint64_t seen = 0;                                ///< the last walk that has visited it
+    turning_rest::Carrier carrier;  ///< if there are others: how what they lie on moves
+    std::uint64_t seen = 0;         ///< the last walk that has visited it
     std::uint32_t place = 0;
   };
   /// Of the bodies of a pair that are not fixed.
@@ -228,12 +230,14 @@ class TurningRest {
   void wake(BodySlot slot);
   void wake_only(std::span<const BodySlot> slots);
 
+  turning_rest::Carrier carrier(BodySlot slot) const;
+  Eigen::Vector3d half_weight(BodySlot slot) const;
   double acceleration(BodySlot slot) const;
   Scale scale(Key key) const;
   double reach(const Scale& scale) const;
   double calm_speed(const Scale& scale) const;
-  std::optional<Eigen::Vector3d> support_velocity(BodySlot a, BodySlot b) const;
-  bool calm(BodySlot slot, double acceleration, const Eigen::Vector3d& support_velocity) const;
+  std::optional<turning_rest::Carrier> common_carrier(BodySlot a, BodySlot b) const;
+  bool calm(BodySlot slot, double acceleration, const turning_rest::Carrier& carrier) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note(Key key, const collision::Contact& contact);
   Group find_group(BodySlot first, bool resting = false);

@@ -176,9 +176,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
   visit(first);
   for (std::size_t i = 0; i < group.bodies.size(); ++i) {
     const BodySlot slot = group.bodies[i];
-    Load load{.mass = bodies_[slot].mass,
-              .size = bodies_[slot].bounding_radius,
-              .acceleration = 2 * bodies_.free_acceleration(slot)};
+    Load load{.mass = bodies_[slot].mass, .size = bodies_[slot].bounding_radius, .acceleration = 2 * half_weight(slot)};
     group.loads.push_back(load);
     for (const BodySlot other : of_[slot].others) {
       const Key key = std::minmax(slot, other);
@@ -197,14 +195,14 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
         if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
         if (!std::exchange(links, true) && !bodies_.fixed(other)) visit(other);
         if (!rests && (((friction == 0 || smooth) && slides(key, place.normal)) ||
-                       (bodies_.fixed(other) && !glides_with(bodies_.motion(other), of_[slot].carried_at)))) {
+                       (bodies_.fixed(other) && !moves_with(bodies_.motion(other), of_[slot].carrier)))) {
           busy.push_back(of_[slot].place);
           if (!bodies_.fixed(other)) busy.push_back(of_[other].place);
         }
         Vector3d x = 0.5 * (on_a + on_b);
         for (const auto& [slot_of, frame] : {std::pair<BodySlot, const BodyFrame&>{key.first, a}, {key.second, b}}) {
           if (bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;
-          x = pressed_at(x, frame.origin(), bodies_.free_acceleration(slot_of), place.normal, rolling);
+          x = pressed_at(x, frame.origin(), half_weight(slot_of), place.normal, rolling);
           break;
         }
         group.footholds.push_back({.a = place_of(key.first),

@@ -20,7 +20,7 @@ typename TurningRest<Motion>::Image TurningRest<Motion>::image() const {
     image.looked.push_back(member.looked);
     image.rests.push_back(member.rests);
     image.ignored.push_back(member.ignored);
-    image.carried_at.push_back(member.others.empty() ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : member.carried_at);
+    image.carriers.push_back(member.others.empty() ? turning_rest::Carrier{} : member.carrier);
   }
   image.woken = woken_;
   image.blows = blows_.image(clock_.now);
@@ -37,7 +37,7 @@ void TurningRest<Motion>::become(const Image& image) {
     of_[slot].looked = image.looked[slot];
     of_[slot].rests = image.rests[slot] != 0;
     of_[slot].ignored = image.ignored[slot];
-    of_[slot].carried_at = image.carried_at[slot];
+    of_[slot].carrier = image.carriers[slot];
   }
   for (const auto& one : image.pairs) {
     pair({one.a, one.b}) = one.pair;
@@ -52,7 +52,7 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
                                        const WorldOptions& options) const {
   constexpr double unit_rounding = 0x1p-40;  // far above that of a normalisation
   if (rests.size() != since.size() || looked.size() != since.size() || ignored.size() != since.size() ||
-      carried_at.size() != since.size())
+      carriers.size() != since.size())
     image::fail("resting: is not of as many bodies as are calm");
   if (since.size() > bodies.bodies.size()) image::fail("resting: of more bodies than there are");
   if (!pairs.empty() && options.response != Response::elastic) image::fail("resting: is there in a mode without it");
@@ -77,7 +77,7 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
     image::require(image::is_past(ignored[i].since, now), "resting bodies", i, "has not been struck yet");
     image::require(ignored[i].velocity.allFinite() && ignored[i].angular_velocity.allFinite(), "resting bodies", i,
                    "a velocity is not finite");
-    image::require(carried_at[i].allFinite(), "resting bodies", i, "the velocity of what carries it is not finite");
+    image::require(carriers[i].finite(), "resting bodies", i, "the motion of what carries it is not finite");
   }
   for (std::size_t i = 0; i < woken.size(); ++i) {
     image::require(bodies.entered(woken[i]), "woken", i, "is no body in the world");

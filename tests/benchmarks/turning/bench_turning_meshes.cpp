@@ -171,7 +171,7 @@ int main(int argc, char** argv) {
         queries.resize(static_cast<std::size_t>(std::min(count, of_fcl)));
         tell(2 * around * across, name, turn, "here", queries.size(), run(queries, truth, 3, method));
         tell(2 * around * across, name, turn, "FCL", queries.size(),
-             run(queries, truth, 1, [&](const Query& query) { return of_peer.contact(query.a, query.b, 1e-6); }));
+             run(queries, truth, 1, [&](const Query& query) { return of_peer.contact(query.a, query.b); }));
 #endif
       }
     }

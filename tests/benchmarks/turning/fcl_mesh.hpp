@@ -14,9 +14,9 @@ class FclMesh {
 
   explicit FclMesh(const kds::collision::Mesh& mesh);
 
-  /// When two of it first meet in [0, 1], s; > 1 if FCL says that they do not. `tolerance` is a part of the call's
-  /// time.
-  double contact(const Motion& a, const Motion& b, double tolerance) const;
+  /// When two of it first meet in [0, 1], s; > 1 if FCL says that they do not. It ends with a step of less than 1e-5 of
+  /// a call's time, a constant of FCL's.
+  double contact(const Motion& a, const Motion& b) const;
 
  private:
   struct Model;

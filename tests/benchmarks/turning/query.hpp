@@ -34,7 +34,8 @@ inline Eigen::Isometry3d pose(const kds::certificates::RigidMotion<1>& motion, d
 }
 
 /// When the boxes first meet in [0, 1], s; > 1 if the method says that they do not.
-double fcl_contact(const Query& query);
+/// FCL is asked frame by frame.
+double fcl_contact(const Query& query, int frames);
 double bullet_contact(const Query& query);
 
 }  // namespace turning
