@@ -140,7 +140,7 @@ class Volumes {
   std::vector<std::optional<BendingBounds>> bent_;  ///< by body, up to the last that bends: of the present piece
   std::vector<KdopDirection> directions_;           ///< beyond the axes
   std::vector<std::array<double, 2>> extents_;      ///< by body and direction
-  DaryQueue<> ends_;                                ///< slots are bodies
+  DaryQueue<BodyRank> ends_;                        ///< slots are bodies
   bool meshes_ = false;                             ///< there is or has been one
   bool calling_ = false;
 };

@@ -181,7 +181,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
               .acceleration = 2 * bodies_.free_acceleration(slot)};
     group.loads.push_back(load);
     for (const BodySlot other : of_[slot].others) {
-      const Key key = std::minmax(slot, other);
+      const Key key = bodies_.in_order(slot, other);
       if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
       if (resting && !pairs_[key].rests) continue;
       const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
