@@ -89,6 +89,7 @@ template <class Motion>
 template <class Archive>
 void Bodies<Motion>::Image::archive_bodies(Archive& archive) {
   archive.each(bodies, [&](One& one) { body(archive, one); });
+  if constexpr (Archive::loading) next_id = bodies.size();
 }
 
 template <class Motion>

@@ -80,7 +80,7 @@ struct Bodies<Motion>::Image {
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
 
-  /// The bodies alone, whose meshes are among `meshes`.
+  /// The bodies alone, whose meshes are among `meshes`. Loading gives them the ids 0, 1, ...
   template <class Archive>
   void archive_bodies(Archive& archive);
 
