@@ -58,7 +58,6 @@ class Volumes {
 
   /// A mesh is added: true if it is the first. Then the volumes of all bodies change.
   bool make_room_for_meshes() { return !std::exchange(meshes_, true); }
-  bool has_room_for_meshes() const { return meshes_; }
 
   /// Whether any body has or had a caller's function; and whether this one has.
   bool any_from_callers() const { return !given_.empty(); }

@@ -56,7 +56,13 @@ DomainEvent::Kind to_domain_kind(EventKind kind) {
 Event to_event(const DomainEvent& event) {
   const auto& c = event.contact;
   // In the scene of a file nothing is removed, so ids are places.
-  return {c.time,     to_event_kind(event.kind), body_slot(event.a), body_slot(event.b), c.point, c.normal, c.feature_a,
+  return {c.time,
+          to_event_kind(event.kind),
+          kds::collision::body_slot(event.a),
+          kds::collision::body_slot(event.b),
+          c.point,
+          c.normal,
+          c.feature_a,
           c.feature_b};
 }
 
