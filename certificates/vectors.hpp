@@ -17,7 +17,7 @@ inline Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b)
 }
 inline double squared_norm(const Eigen::Vector3d& v) { return dot(v, v); }
 inline double norm(const Eigen::Vector3d& v) { return std::sqrt(squared_norm(v)); }
-/// Zero stays zero, and so does a vector so short that its square underflows.
+/// v / |v|; v itself if it is zero, or so short that its square underflows.
 inline Eigen::Vector3d normalized(const Eigen::Vector3d& v) {
   const double length = norm(v);
   return length > 0 ? Eigen::Vector3d(v / length) : v;

@@ -7,8 +7,8 @@
 
 namespace kds::certificates {
 
-/// side * (limit - value(t)) >= 0: the value stays below the limit (side 1) or above it (side -1). Degree that of the
-/// value, which may be sampled.
+/// side * (limit - value(t)) >= 0: the value stays below the limit (side 1) or above it (side -1). Its degree is that
+/// of the value, of which perhaps only samples are known (kds/bounded.hpp).
 template <class Value>
 struct WithinLimit {
   static constexpr int degree = Value::degree;

@@ -76,10 +76,10 @@ Triple<Polynomial<Degree, Number>> from_cell(const PointMotion<Degree>& a, const
   return x;
 }
 
-/// How far x is from the origin, the line through it along one direction or the plane of two, by the dimension: the
-/// square of that, less that of a radius, times the square of the direction or of the product of the two.
+/// Positive if x is farther than r from the origin (dimension 0), from the line through it along u (1), or from the
+/// plane through it that u and v span (2), with n = u x v:
 ///
-/// With r the radius, u and v the directions: x^2 - r^2; (u x x)^2 - r^2 u^2; or, with n = u x v, (n . x)^2 - r^2 n^2.
+///     x^2 - r^2,    (u x x)^2 - r^2 u^2,    (n . x)^2 - r^2 n^2
 template <int Degree, class Number, class Direction>
 Polynomial<2 * Degree, Number> distance_beyond(const Triple<Polynomial<Degree, Number>>& x, int dimension,
                                                const Direction& direction, const Number& radius) {

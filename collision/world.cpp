@@ -5,6 +5,7 @@
 #include "collision/world/engine.hpp"
 #include "kds/framework/snapshot.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace kds::collision {
@@ -248,6 +249,7 @@ void BasicWorld<Motion>::visit_bodies(BodyVisitor visit) const {
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (bodies.alive(slot)) ids.push_back(bodies.id_of(slot));
   }
+  if (!std::is_sorted(ids.begin(), ids.end())) std::sort(ids.begin(), ids.end());
   for (const BodyId id : ids) visit(id);
 }
 

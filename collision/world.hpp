@@ -217,12 +217,12 @@ class BasicWorld final {
   bool resting(BodyId a, BodyId b) const;
   bool resting_at_wall(BodyId a, int wall) const;
 
-  /// Calls visit(id), in order of the slots, for each body that a body touches or rests on, as touching() and
+  /// Calls visit(id), in order of the ids, for each body that a body touches or rests on, as touching() and
   /// resting() say. `visit` is called when the answer is complete, and may change the world.
   void visit_partners(BodyId id, BodyVisitor visit) const;
 
-  /// Calls visit(id), in order of the slots, for each body, those that enter later included. `visit` is called when the
-  /// answer is complete, and may change the world. O(n), n being the most bodies that there have been at one time.
+  /// Calls visit(id), in order of the ids, for each body, those that enter later included. `visit` is called when the
+  /// answer is complete, and may change the world. O(n log n), n being the most that there have been at one time.
   void visit_bodies(BodyVisitor visit) const;
 
   WorldCounters counters() const;
@@ -240,7 +240,7 @@ class BasicWorld final {
   // These throw std::invalid_argument for a box or a time that is out of range, and std::logic_error in box functions
   // and where the world can no longer be used.
 
-  /// Calls visit(id), in order of the slots, for each body whose bounding volume meets the box [min, max] at now().
+  /// Calls visit(id), in order of the ids, for each body whose bounding volume meets the box [min, max] at now().
   /// Ends may be infinite.
   void visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max, BodyVisitor visit) const;
 

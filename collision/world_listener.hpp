@@ -9,7 +9,7 @@
 
 namespace kds::collision {
 
-/// An event of two bodies, a in the lower slot: a contact, an overlap, a separation, the start or end of rest ... Or of
+/// An event of two bodies, a with the lower id: a contact, an overlap, a separation, the start or end of rest ... Or of
 /// a mesh that bends and itself: then a is b.
 struct PairEvent {
   BodyId a;
@@ -34,7 +34,7 @@ template <class Motion>
 class BasicWorld;
 
 /// Its functions are called for events in the order of their times. The order of events at one time does not depend on
-/// the broad phase either: bodies come by their slots, and bodies that had one slot by their generations (body_rank).
+/// the broad phase either: bodies come by their ids, which is the order in which they were added.
 /// What follows from an event, or from what callers do, comes before the next event, in this order:
 /// 1. `rebound_suppressed`, `wakes`, `passes`, `rests`, each by (a, b), then `moved` and `piece`, by body; resting
 ///    contacts that begin and end at one instant are not reported;
@@ -64,7 +64,7 @@ class BasicWorldListener {
   /// `none`, and for sensors, a jump into contact is a contact.)
   virtual void overlap(BasicWorld<Motion>&, const PairEvent&) {}
   virtual void wall(BasicWorld<Motion>&, const WallEvent&) {}  ///< motions are as after response
-  /// With WorldOptions.report_pairs: the bounding volumes of two bodies, the first in the lower slot, begin and cease
+  /// With WorldOptions.report_pairs: the bounding volumes of two bodies, the first with the lower id, begin and cease
   /// to overlap at a time in s.
   virtual void pair_began(BasicWorld<Motion>&, BodyId, BodyId, double) {}
   virtual void pair_ended(BasicWorld<Motion>&, BodyId, BodyId, double) {}

@@ -111,7 +111,7 @@ class AnyWorld : public AnyBodies {
   virtual std::string_view broad_phase() const = 0;
   virtual kds::collision::Profile profile() const = 0;
 
-  /// All, in order of their slots.
+  /// All, in order of their ids.
   virtual std::vector<BodyId> bodies() const = 0;
   virtual std::vector<BodyId> in_box(const Eigen::Vector3d& min, const Eigen::Vector3d& max) const = 0;
   /// `motion`: of the corner `min`, with which the other one moves.

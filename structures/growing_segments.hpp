@@ -167,7 +167,7 @@ class GrowingSegmentsRule {
   void look_ahead(Id id, const Next* after, Pen& repair);
   void go_on(Id id, const Next& from, Pen& repair);
   void put_ahead(Id id, Id other, Pen& repair);
-  void settle(Id id, const Arrival* until, Pen& repair);
+  void process_arrivals(Id id, const Arrival* until, Pen& repair);
 
   std::vector<End> ends_;    ///< by id
   BoxTree<TrackBox> tree_;   ///< of all but the borders
@@ -257,7 +257,7 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
 /// Takes an end through all arrivals that are due, or through those before `until`. Whether it stops depends on how far
 /// other ends have come, so these are first taken through their earlier arrivals, and so on: the times get ever
 /// earlier, so this ends.
-inline void GrowingSegmentsRule::settle(Id id, const Arrival* until, Pen& repair) {
+inline void GrowingSegmentsRule::process_arrivals(Id id, const Arrival* until, Pen& repair) {
   const auto is_due = [&] {
     const End& end = ends_[id];
     return !end.stop && end.arrival && repair.sign(*end.arrival) < 0 && (!until || order(*end.arrival, *until) > 0);
@@ -267,7 +267,7 @@ inline void GrowingSegmentsRule::settle(Id id, const Arrival* until, Pen& repair
     if (!repair[next.at].whole && next.arrival.at != Arrival::At::beginning) {
       const Arrival passing =
           next.arrival.at == Arrival::At::tip ? next.arrival : across(next.arrival.track, next.arrival.end);
-      settle(next.at, &passing, repair);
+      process_arrivals(next.at, &passing, repair);
     }
     if (!is_covered(next.arrival, next.at, repair.elements())) {
       go_on(id, next, repair);
@@ -283,7 +283,7 @@ inline void GrowingSegmentsRule::settle(Id id, const Arrival* until, Pen& repair
 
 inline Effect GrowingSegmentsRule::repair(Slot slot, Pen& repair) {
   const auto id = static_cast<Id>(slot);
-  settle(id, nullptr, repair);
+  process_arrivals(id, nullptr, repair);
   return ends_[id].stop ? Effect::external : Effect::internal;
 }
 

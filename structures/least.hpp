@@ -19,17 +19,17 @@
 
 namespace kds::structures {
 
-/// An element has come among the least, or is not among them any more. One that stays there while it gets another
-/// motion goes and comes again, in one call.
+/// An element has come among the least, or has left them. One that gets another motion and stays among them is told of
+/// twice in one call: as gone, and as come.
 struct LeastChange {
-  enum class What : std::uint8_t { came, went };  ///< among them, from among them
+  enum class What : std::uint8_t { came, went };  ///< to the least; away from them
   What what;
   Id id;
 
   friend bool operator==(const LeastChange&, const LeastChange&) = default;
 };
 
-/// Another element is the greatest of the least ones, or the one that is it has got a new motion.
+/// The greatest of the least ones is another element than before, or the same one with a new motion.
 struct LastChange {
   Id last;  ///< nobody if there are fewer than count() elements
 
@@ -48,7 +48,7 @@ struct LastChange {
 /// It reports which elements are among the least (LeastChange), and which is the last of them (LastChange), so that
 /// other rules may stand on it.
 ///
-/// The ranking is kept here, so what it contains lives as long as its certificates. One that contains a motion (points
+/// It stores the ranking, since certificates may refer to what that contains. One that contains a motion (points ranked
 /// by their distances from a robot) cannot be reversed: reverse() turns round elements only.
 template <Ranking Rank>
 class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
@@ -154,7 +154,7 @@ class LeastRule : public Tournaments<LeastRule<Rank>, typename Rank::Element> {
     if (contains(id)) repair.report(LeastChange{LeastChange::What::went, id});
     leave(id, repair);
   }
-  /// An element with a new motion is removed and inserted: if it is the last one, another is in between.
+  /// An element with a new motion is removed and inserted, so for a while another one is last if this one was.
   template <class F>
   Effect renew_last(Pen& repair, F&& change) {
     const Id before = last();

@@ -32,8 +32,8 @@ class PeriodicLawson {
   };
   /// What has become of a point that was to be inserted.
   struct Found {
-    bool same;          ///< whether it stays in one place with a vertex of the mesh, so that it is not inserted:
-    VertexCopy vertex;  ///< with this one
+    bool same;          ///< whether a vertex is and stays at the same place: then the point has not been inserted
+    VertexCopy vertex;  ///< if `same`, that vertex
   };
 
   /// `touched` collects the triangles that have changed, `changed` the edges that have come, gone or been flipped.
@@ -126,7 +126,7 @@ class PeriodicLawson {
   }
 
  private:
-  /// Whether a flip takes the edge from its origin, which is to be removed: it may come to lie on the new edge.
+  /// Whether the edge may be flipped away from its origin, which is to be removed and may lie on the new edge then.
   bool can_leave(Edge h) const {
     const auto [a, b, c, d] = mesh_.corners_beside(h);
     return is_.orientation(a, d, c) >= 0 && is_.orientation(d, b, c) > 0;

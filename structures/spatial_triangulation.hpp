@@ -165,7 +165,7 @@ class SpatialTriangulationRule {
   bool flip(Slot slot, const Predicates& is, Pen& repair);
   bool build_around(std::vector<std::uint32_t> wrong, Id without, const Predicates& is, Pen& repair);
   void place(Id id, std::uint32_t near, const Predicates& is, Pen& repair);
-  void settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair);
+  void complete_change(const Replaced& replaced, Id without, const Predicates& is, Pen& repair);
   std::uint32_t home_of(Id id, const std::vector<std::uint32_t>& tetrahedra, const Predicates& is) const;
   void hide(Id id, std::uint32_t t, const Predicates& is, Pen& repair);
   void reveal(Id id, Pen& repair);

@@ -22,7 +22,7 @@ bool SpatialTriangulationRule<Path>::flip(Slot slot, const Predicates& is, Pen& 
   for (Facet f = 4 * t; f < 4 * t + 4; ++f) {
     const bool failed = part == 4 ? mesh_.apex(mesh_.twin(f)) == infinite : f % 4 == part;
     if (!failed || !Mesher(mesh_, is).flip(f, replaced)) continue;
-    settle(replaced, nobody, is, repair);
+    complete_change(replaced, nobody, is, repair);
     return true;
   }
   return false;
@@ -34,7 +34,7 @@ bool SpatialTriangulationRule<Path>::build_around(std::vector<std::uint32_t> wro
                                                   Pen& repair) {
   const auto hidden = [this](std::uint32_t t, const auto& take) { hidden_.for_each(t, take); };
   const std::optional<Replaced> replaced = LocalRebuild<Predicates>(mesh_, is)(std::move(wrong), without, hidden);
-  if (replaced) settle(*replaced, without, is, repair);
+  if (replaced) complete_change(*replaced, without, is, repair);
   return replaced.has_value();
 }
 
@@ -52,13 +52,14 @@ void SpatialTriangulationRule<Path>::place(Id id, std::uint32_t near, const Pred
   for (const std::uint32_t created : replaced.created) {
     lost_ = lost_ || (mesh_.finite(created) && is.orientation(mesh_.corners(created)) <= 0);
   }
-  settle(replaced, nobody, is, repair);
+  complete_change(replaced, nobody, is, repair);
 }
 
 /// Completes a change of the mesh: finds a place for the points that were hidden in the tetrahedra that have been
 /// replaced, and for the vertices that are gone, and marks the new certificates.
 template <class Path>
-void SpatialTriangulationRule<Path>::settle(const Replaced& replaced, Id without, const Predicates& is, Pen& repair) {
+void SpatialTriangulationRule<Path>::complete_change(const Replaced& replaced, Id without, const Predicates& is,
+                                                     Pen& repair) {
   lost_ = lost_ || !replaced.sound;
   if (lost_) return;  // Everything will be built anew.
   std::vector<Id> orphans;

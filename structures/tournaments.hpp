@@ -82,7 +82,7 @@ class Tournaments {
     for (std::size_t i = 0; i < brackets_.size(); ++i) leave(id, i, repair);
   }
 
-  /// Throws AuditFailure unless each element is in `tournaments` of them, and nobody else is in any.
+  /// Throws AuditFailure unless each element is in so many of the tournaments, and no id that is none in any.
   void audit_matches(const MovingSet<Element>& x, std::size_t tournaments) const {
     for (const Bracket& each : brackets_) each.audit(Rule::name);
     for (Id id = 0; id < std::max(x.end_id(), end_entrant()); ++id) {

@@ -73,7 +73,7 @@ struct TrackBox {
     }
     return all;
   }
-  /// The surface of the beginnings only: all boxes grow about alike.
+  /// For building trees: half the circumference at the beginning, since all boxes grow at about the same rate.
   double surface() const { return max[0] - min[0] + (max[1] - min[1]); }
 
   friend bool operator==(const TrackBox&, const TrackBox&) = default;

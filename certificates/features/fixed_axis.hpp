@@ -37,8 +37,8 @@ inline double first_root(double c0, double c1, double c2) {
 }  // namespace detail
 
 /// The last r up to which, from s on, `axis` certifiably keeps all corners of the patch farther than the margin and
-/// `thickness` from the origin; infinity if that is up to the end of time, s if it does not do so now. Any axis will
-/// do: a bad one is only of no use.
+/// `thickness` from the origin; infinity if that is up to the end of time, s if it does not do so now. Any axis may
+/// be tried: one that does not separate the two gives s.
 template <int Degree>
 double separated_until(const PatchPaths<Degree>& paths, double margin, double thickness, const Eigen::Vector3d& axis,
                        double s) {

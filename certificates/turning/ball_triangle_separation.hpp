@@ -32,7 +32,7 @@ struct BallAndTriangle {
   std::array<Eigen::Vector3d, 3> corners;  ///< of the body
   TrianglePart part;
 
-  /// Products of two turned numbers of the body are terms in its spin, taken twice.
+  /// Certificates are sums in two spins. Only one body turns here, so both are its spin.
   std::array<Spin, 2> spins() const { return {body.spin(), body.spin()}; }
 
   const Eigen::Vector3d& corner(std::size_t ahead) const { return corners[(first() + ahead) % 3]; }
@@ -62,9 +62,9 @@ struct BallAndTriangle {
 
 }  // namespace detail
 
-/// m . d >= 0: the centre of a ball is where a part of a triangle is the nearest, seen from that part. Of a face m is
-/// its normal; of an edge the direction in the plane away from the triangle (number 0); of a corner each of the two
-/// edges that end there (numbers 0 and 1).
+/// m . d >= 0: the centre of a ball is on that side of a part of a triangle on which the part may be the nearest. For a
+/// face m is its normal; for an edge the direction in the plane away from the triangle (number 0); for a corner there
+/// are two, along the edges that end there (numbers 0 and 1).
 template <int Degree>
 struct CentreBeyondPart : detail::BallAndTriangle<Degree> {
   static constexpr int degree = Degree;

@@ -18,11 +18,11 @@
 
 namespace kds::certificates {
 
-/// Of points x and y of bodies a and b, with d the way from x to y: the products of d and of vectors of the bodies, all
-/// of them times one positive number, `scale`. Vectors of the bodies are made of doubles, in the arithmetic of Number.
+/// x and y are points of the bodies a and b, and d = y - x. This gives the products of d with itself and with vectors
+/// of the bodies, all times one positive number, `scale`. The vectors are doubles, taken in the arithmetic of Number.
 ///
 /// SummedProducts has them as TurningSums, ProductsNow at one time: a certificate writes its formula once, for both.
-/// `Once` is the type of what is linear in what turns with either body, `Twice` that of products of two of these.
+/// `Once` is the type of terms with one turned vector in each product, `Twice` that of products of two such terms.
 template <class Number, int Order, int Degree>
 class SummedProducts {
   static constexpr int order_of_way = std::min(Order, Degree);
@@ -141,8 +141,8 @@ class SummedProducts {
 
 /// The same at one time: Number is Ball<double>, with the scale 1, or Ball<DoubleDouble>, with that of SummedProducts.
 ///
-/// Error bound: what turns vectors tells how far it is off (Rotation, ExtendedPose) relative to the vector that it
-/// turns, of which the radii add to that; all else is done in balls.
+/// Error bound: Rotation and ExtendedPose bound the error of a turned vector, as a part of its length. The vector's own
+/// radii are added to that. Everything else is computed in balls, which bound their errors themselves.
 template <class Number>
 class ProductsNow {
   static constexpr bool quick = std::is_same_v<Number, Ball<double>>;
@@ -206,8 +206,8 @@ class ProductsNow {
     return result;
   }
 
-  /// v rotated. The error of v, a vector of components up to the radii, keeps its length, which is at most their sum;
-  /// and the rotation is as inexact for it as for the middle of v.
+  /// v rotated. The error of v is a vector whose length is at most the sum of the radii; a rotation keeps lengths. Its
+  /// own error is a part of the length of what it turns: of the middle of v, and of that error.
   static Vector turned(const Turn& turn, const Vector& v) {
     const double radii = v[0].radius + v[1].radius + v[2].radius;
     Vector result;

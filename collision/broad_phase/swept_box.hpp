@@ -35,6 +35,10 @@ inline StaticBox whole_space() {
 ///
 /// Horner's rule over |elapsed| errs by at most 2 Degree + 1 roundings of the sum of the magnitudes of its terms, and
 /// the elapsed time by one more for each factor; 8 units in the last place of that sum cover degrees 1 and 2.
+///
+/// span_ahead(), which bounds each term by itself, takes three times as many instructions (a box: 535 instead of 169 at
+/// degree 1, 1 027 instead of 354 at degree 2; callgrind), and its boxes of parabolas are 7 % larger in half a second,
+/// 18 % in two.
 template <int Degree>
 requires(Degree <= 2) StaticBox swept_point(const certificates::PointMotion<Degree>& motion, double from, double to) {
   using Eigen::Array3d;
@@ -177,7 +181,7 @@ class BoxSweep {
   double from_;
 };
 
-/// The same for a box whose corners move alike, on straight paths.
+/// The same for a box whose corners move alike, on straight paths: 91 instructions a box in place of 169.
 class AlikeSweep {
  public:
   AlikeSweep(const KineticBox<1>& box, double from)

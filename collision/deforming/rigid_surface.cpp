@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr std::array<std::array<std::uint32_t, 4>, 6> box_faces{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
-/// A mesh, or a hull, whose surface is one.
+/// Whether its surface is a mesh.
 bool is_surface(const Shape& shape) {
   return std::holds_alternative<MeshShape>(shape) || std::holds_alternative<ConvexHull>(shape);
 }
@@ -52,7 +52,7 @@ std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
   return corners;
 }
 
-/// That of a mesh stays with it.
+/// The mesh keeps its own tree; those of other shapes are made here.
 std::shared_ptr<const SurfaceTree> tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offsets) {
   if (is_surface(shape.shape)) {
     const auto mesh = surface_of(shape.shape).mesh;

@@ -34,7 +34,7 @@ struct DrawOptions {
 };
 
 /// Draws the bodies of a world that have entered as they are at `t` >= now() in s if nothing happens until then, or at
-/// now(); in order of their slots. Changes nothing, and may be called in callbacks.
+/// now(); in order of their ids. Changes nothing, and may be called in callbacks.
 ///
 /// Cost: O(lines). Outlines are made anew each time: a renderer that keeps models calls outline() once a shape.
 template <class Motion>
@@ -61,7 +61,7 @@ void draw(const BasicWorld<Motion>& world, const DrawLine& line, const DrawOptio
     }
     if (!options.partners) return;
     world.visit_partners(id, [&](BodyId other) {
-      if (body_rank(other) < body_rank(id)) return;  // Each pair once.
+      if (other < id) return;  // Each pair once.
       line(centre, path_of(world.motion(other)).position(t), Drawn::partner);
     });
   });

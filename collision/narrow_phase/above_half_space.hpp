@@ -47,7 +47,7 @@ class AboveHalfSpace {
     if (!apart_ && earliest() <= horizon) visit(*this);
   }
 
-  /// A time not before now before which they do not penetrate.
+  /// They do not penetrate between now and this time.
   double earliest() const { return motion_.time_before(window_.begin); }
   bool inside(double t) const { return all_closed(*this, t); }
   /// The first double t in [now, horizon] just after which they penetrate, or `never`. `from`: where to begin.

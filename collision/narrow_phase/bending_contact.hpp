@@ -26,7 +26,7 @@ namespace kds::collision {
 /// the next. In each piece contacts and separations follow each other from its beginning, by SurfaceSearch and
 /// SurfaceTouching. Pieces during which the balls around the two shapes are apart are passed over. Where a body turns
 /// pieces are cut into equal parts, in which its points move nearly on parabolas (RigidSurface::move); as long as the
-/// two are not near many parts are looked at as one, with parabolas that are farther from the truth.
+/// two are not near many parts are taken as one, with parabolas that follow the points less closely.
 ///
 /// Cost: that of a step of the two surfaces, and a search, for each piece that is looked at. A body that turns, and is
 /// as large as the mesh, has some 300 parts a radian; those in which it is near are looked at one by one.

@@ -81,7 +81,7 @@ class BendingPieces {
 
   double speed(double t) const { return norm(b_.velocity(t) - a_.velocity(t)) + turning_; }
 
-  /// From the last keyframe on: the time that the two take at least for a way; and the way at the begin of piece k.
+  /// After the last keyframe: the least time in which the two go so far; how far they have gone when piece k begins.
   double time_of(double way) const {
     return way > 0 ? 2 * way / (speed_ + std::sqrt(speed_ * speed_ + 2 * acceleration_ * way)) : 0;
   }

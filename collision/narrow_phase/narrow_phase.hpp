@@ -28,8 +28,8 @@ struct MovingShape {
 template <int Degree>
 using TranslatingShape = MovingShape<certificates::PointMotion<Degree>>;
 
-/// The triangles of two shapes that touch first, and when: what contact_at would look for again. It saves time and
-/// decides nothing.
+/// The triangles of two shapes that touch first, and when: what contact_at would look for again. It saves time; all
+/// answers are the same without it.
 struct FoundTouch {
   double time = never;  ///< on the clock; `never`: nothing is known
   double tau = 0;       ///< s, from the epoch of the pair: the later of the two motions' starts
@@ -60,7 +60,7 @@ template <class Motion>
 double first_contact(const MovingShape<Motion>& a, const MovingShape<Motion>& b, double t0, double horizon,
                      ContactMode mode, FoundTouch* found = nullptr);
 
-/// What a pair remembers from test to test. It saves time and decides nothing.
+/// What a pair remembers from test to test. It saves time; all answers are the same without it.
 struct PairMemory {
   static constexpr std::uint8_t none = 255;
   std::uint8_t axis = none;  ///< the number of the axis that separated the two

@@ -84,7 +84,7 @@ std::vector<SeenEdge> seen_edges(const ConvexCore& core, const PlacedShape& shap
   return edges;
 }
 
-/// Whether an edge may be what a polytope turns to a direction across it, of length up to 1.
+/// Whether an edge may be the farthest part of a polytope along n, a vector across it of length up to 1.
 bool may_support(const SeenEdge& edge, const Vector3d& n) {
   constexpr double rounding = 0x1p-44;
   for (std::size_t k = 0; k < edge.faces; ++k) {

@@ -6,6 +6,7 @@
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/shapes/rounded_core.hpp"
 #include "collision/vectors.hpp"
 
 #include <boost/container/small_vector.hpp>
@@ -143,27 +144,24 @@ class Part {
   Vector3d centre_ = Vector3d::Zero();
 };
 
-Convex::Corners box_corners(const PlacedShape& box, const Vector3d& centre) {
+/// Of a ball, a capsule or a box.
+Convex rounded(const PlacedShape& shape, const Vector3d& centre) {
+  const RoundedCore core = rounded_core(shape);
   Convex::Corners corners;
-  for (unsigned signs = 0; signs < 8; ++signs) {
+  for (unsigned signs = 0; signs < 1u << core.generators.size(); ++signs) {
     Vector3d corner = centre;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      corner += ((signs >> axis & 1) != 0 ? 1 : -1) * box.half_axes[axis];
+    for (std::size_t i = 0; i < core.generators.size(); ++i) {
+      corner += ((signs >> i & 1) != 0 ? 1 : -1) * core.generators[i].length * core.generators[i].direction;
     }
     corners.push_back(corner);
   }
-  return corners;
+  return Convex(std::move(corners), core.radius);
 }
 
 /// Precondition: no half-space.
 void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::vector<Part>& parts) {
   if (shape.parts) {
     for (const PlacedShape& part : *shape.parts) add_parts(part, centre, t, parts);
-  } else if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) {
-    parts.emplace_back(Convex({centre}, ball->radius));
-  } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
-    const Vector3d half = capsule->half_length * shape.rotation.col(2);
-    parts.emplace_back(Convex({Vector3d(centre - half), Vector3d(centre + half)}, capsule->radius));
   } else if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
     Convex::Corners corners;
     for (const Vector3d& point : hull->polytope->points()) {
@@ -181,7 +179,7 @@ void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::
       parts.emplace_back(Convex(std::move(corners)));
     }
   } else {
-    parts.emplace_back(Convex(box_corners(shape, centre)));
+    parts.emplace_back(rounded(shape, centre));
   }
 }
 

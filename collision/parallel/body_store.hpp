@@ -72,7 +72,7 @@ class BodyStore {
   /// Adds the bodies of a parcel, without attachments. Throws std::runtime_error for a body that is here already.
   /// Precondition: it stores a part.
   void store(const Parcel<Motion>& parcel) {
-    const std::vector<BodySlot> slots = engine().store(parcel);
+    const std::vector<BodySlot> slots = engine().store(parcel, whole_);
     for (std::size_t i = 0; i < slots.size(); ++i) {
       if (part_->slots.find(parcel.numbers[i]) != no_body) throw std::runtime_error("snapshot: a body is there twice");
       part_->slots.add(parcel.numbers[i], slots[i]);

@@ -297,11 +297,12 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
   if (!logs_) return;
   const DomainIndex other = of_a == index_ ? of_b : of_a;
-  put({kind, shared ? other : DomainEvent::nobody, a, b, event.contact, event.user_data_a, event.user_data_b});
+  put({kind, shared ? other : DomainEvent::nobody, key(event.a), key(event.b), event.contact, event.user_data_a,
+       event.user_data_b});
 }
 
-/// Independent events of one time come in the order of slots; those of contacts, which may follow from each other, are
-/// in the order of numbers already.
+/// Independent events of one time are put into the order of ids, as a step may have found them in another; those of
+/// contacts, which may follow from each other, are in that order already.
 template <class Motion>
 void Domain<Motion>::put(const DomainEvent& event) {
   auto place = events_.end();
@@ -342,7 +343,7 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
   const bool mine = role == Role::unowned ? is_first_to_know(number(slot), number(slot)) : role != Role::copy;
   if (mine) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
   if (mine && logs_) {
-    put({DomainEvent::Kind::wall, DomainEvent::nobody, number(slot), static_cast<BodySlot>(event.wall), event.contact,
+    put({DomainEvent::Kind::wall, DomainEvent::nobody, key(event.body), static_cast<BodyId>(event.wall), event.contact,
          event.user_data});
   }
   changed(slot, event.contact.time);

@@ -136,6 +136,8 @@ class Domain final : private BasicWorldListener<Motion> {
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
+  /// The id in the scene of a body that has this one here.
+  BodyId key(BodyId here) const { return engine_.bodies().keys().key(body_slot(here)); }
   /// Where a body is in slots_, or would be.
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);

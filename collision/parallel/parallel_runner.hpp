@@ -327,7 +327,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     while (!events_.empty()) {
       const DomainEvent& next = events_.next();
       tell_timers(next.contact.time, next.kind != DomainEvent::Kind::overlap);
-      relay(events_.take_next(), store_.bodies(), *listener_);
+      relay(events_.take_next(), *listener_);
     }
     tell_timers(now_, true);
   }

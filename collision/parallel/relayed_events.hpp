@@ -8,14 +8,12 @@
 
 namespace kds::collision {
 
-/// Tells a listener of an event that a domain has recorded. `bodies`: of the whole scene, for their ids.
-template <class Motion>
-void relay(const DomainEvent& event, const Bodies<Motion>& bodies, ParallelListener& listener) {
+/// Tells a listener of an event that a domain has recorded.
+inline void relay(const DomainEvent& event, ParallelListener& listener) {
   if (event.kind == DomainEvent::Kind::wall) {
-    return listener.wall({bodies.id_of(event.a), static_cast<int>(event.b), event.contact, event.user_data_a});
+    return listener.wall({event.a, static_cast<int>(event.b), event.contact, event.user_data_a});
   }
-  const PairEvent pair{bodies.id_of(event.a), bodies.id_of(event.b), event.contact, event.user_data_a,
-                       event.user_data_b};
+  const PairEvent pair{event.a, event.b, event.contact, event.user_data_a, event.user_data_b};
   if (event.kind == DomainEvent::Kind::contact) listener.contact(pair);
   if (event.kind == DomainEvent::Kind::separation) listener.separation(pair);
   if (event.kind == DomainEvent::Kind::overlap) listener.overlap(pair);

@@ -54,8 +54,9 @@ struct SavedBodies {
     }
     for (std::size_t i = 0; i < overlaps.size(); ++i) {
       const Overlap& overlap = overlaps[i];
-      image::require(overlap.a < overlap.b && overlap.b < rest.bodies.elsewhere.slots, "overlaps", i,
-                     "is not of two bodies");
+      image::require(
+          rest.bodies.before(overlap.a, overlap.b) && std::max(overlap.a, overlap.b) < rest.bodies.elsewhere.slots,
+          "overlaps", i, "is not of two bodies");
       image::require(image::is_past(overlap.passes_at, rest.now), "overlaps", i, "passes at a time after now");
     }
   }

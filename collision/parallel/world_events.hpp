@@ -15,14 +15,14 @@
 
 namespace kds::collision {
 
-/// An event as a domain records it. Bodies by their numbers.
+/// An event as a domain records it. Bodies by their ids in the scene.
 struct DomainEvent {
   /// In the order in which events of one time are told.
   enum class Kind : std::uint8_t { overlap, wall, contact, separation } kind;
   static constexpr DomainIndex nobody = no_domain;
   DomainIndex other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
-  BodySlot a;
-  BodySlot b;  ///< of a wall its number
+  BodyId a;
+  BodyId b;  ///< of a wall its number
   Contact contact;
   std::uint64_t user_data_a = 0;  ///< of the bodies
   std::uint64_t user_data_b = 0;
@@ -86,7 +86,7 @@ class BasicEventMerge {
 
  private:
   struct Possible {
-    std::tuple<double, int, BodySlot, BodySlot> order;
+    std::tuple<double, int, BodyId, BodyId> order;
     std::size_t domain;
     bool operator<(const Possible& other) const {
       return std::tie(other.order, other.domain) < std::tie(order, domain);

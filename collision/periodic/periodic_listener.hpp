@@ -9,7 +9,7 @@
 
 namespace kds::collision {
 
-/// Two bodies, a in the lower slot, and the copy of b that a meets: b moved by `offset` periods. The contact is where a
+/// Two bodies, a with the lower id, and the copy of b that a meets: b moved by `offset` periods. The contact is where a
 /// is; its normal points from a to that copy of b.
 struct PeriodicEvent {
   BodyId a;
@@ -24,7 +24,7 @@ struct PeriodicEvent {
 template <int Degree>
 class PeriodicWorld;
 
-/// Told of events in order of time; at one time as BasicWorldListener says, by slots of PeriodicWorld::world(), and of
+/// Told of events in order of time; at one time as BasicWorldListener says, by ids in PeriodicWorld::world(), and of
 /// `wrapped` last. Callbacks may add, remove and move bodies.
 template <int Degree>
 class PeriodicListener {

@@ -70,7 +70,7 @@ PeriodicWorld<Degree>::PeriodicWorld(const PeriodicOptions& options, Listener* l
 template <int Degree>
 bool PeriodicWorld<Degree>::contains(BodyId id) const {
   const BodySlot slot = body_slot(id);
-  return slot < reals_.size() && reals_[slot].alive && reals_[slot].generation == body_generation(id);
+  return slot < reals_.size() && reals_[slot].alive && keys_.id(slot) == id;
 }
 
 template <int Degree>
@@ -122,15 +122,16 @@ BodyId PeriodicWorld<Degree>::add_body(const Description& description) {
   inside.collides_with &= body_categories;
   inside.collides_with |= inside.collides_with << image_bits;
   const BodyId in_world = world_.add_body(inside);
-  const BodySlot slot = free_.empty() ? static_cast<BodySlot>(reals_.size()) : free_.back();
-  free_.empty() ? void(reals_.emplace_back()) : free_.pop_back();
+  const bool reused = !free_.empty() && keys_.can_give(free_.back());
+  const BodySlot slot = reused ? free_.back() : static_cast<BodySlot>(reals_.size());
+  reused ? free_.pop_back() : void(reals_.emplace_back());
+  keys_.give(slot);
   make_room(leaving_, reals_.size());
   set_role(in_world, slot, {});
   reals_[slot] = {.in_world = in_world,
                   .inverse_mass = description.fixed ? 0 : 1 / description.mass,
                   .restitution = description.restitution,
                   .radius = radius,
-                  .generation = reals_[slot].generation,
                   .alive = true,
                   .placed_at = now(),
                   .crossings = -into,
@@ -138,7 +139,7 @@ BodyId PeriodicWorld<Degree>::add_body(const Description& description) {
   ++size_;
   if (radius > greatest_radius_) grow_reach(radius);
   find_zones(reals_[slot]);
-  settle(reals_[slot]);
+  update_place(reals_[slot]);
   return id_of(slot);
 }
 
@@ -149,8 +150,8 @@ void PeriodicWorld<Degree>::remove_body(BodyId id) {
   world_.remove_body(body.in_world);
   set_role(body.in_world, no_body, {});
   leaving_.clear(body_slot(id));
-  body = {.generation = body.generation + 1};
-  if (body.generation != 0) free_.push_back(body_slot(id));  // all its ids have been given otherwise
+  body = {};
+  free_.push_back(body_slot(id));
   --size_;
 }
 
@@ -164,7 +165,7 @@ void PeriodicWorld<Degree>::update_motion(BodyId id, const Motion& motion) {
   body.placed_at = now();
   move_images(body);
   find_zones(body);
-  settle(body);
+  update_place(body);
 }
 
 template <int Degree>
@@ -228,7 +229,7 @@ PeriodicEvent PeriodicWorld<Degree>::event_of(const PairEvent& pair) const {
   const Role& b = role(pair.b);
   PeriodicEvent event{id_of(a.owner),   id_of(b.owner),  b.offset + -a.offset, pair.contact, 0,
                       pair.user_data_a, pair.user_data_b};
-  const bool swap = a.owner > b.owner;
+  const bool swap = event.a > event.b;
   if (swap) {
     std::swap(event.a, event.b);
     std::swap(event.user_data_a, event.user_data_b);
@@ -323,15 +324,16 @@ template <int Degree>
 template <class Archive>
 void PeriodicWorld<Degree>::archive(Archive& archive) {
   archive.tag("periodic world");
-  archive(world_, roles_, reals_, free_, greatest_radius_, slack_, thermal_, counters_);
+  archive(world_, roles_, reals_, keys_, free_, greatest_radius_, slack_, thermal_, counters_);
   if constexpr (Archive::loading) {
-    leaving_ = CalendarQueue<>();
+    leaving_.resize(0);
     make_room(leaving_, reals_.size());
     size_ = 0;
     std::size_t images = 0;
     for (const Real& body : reals_) {
       if (!body.alive) continue;
       ++size_;
+      archive.require(id_of(slot_of(body)) < keys_.next_id(), "a body of a periodic world has an id that is to come");
       const auto is = [&](BodyId in_world, const Offset& offset) {
         return world_.contains(in_world) && body_slot(in_world) < roles_.size() &&
                role(in_world).owner == slot_of(body) && role(in_world).offset == offset;

@@ -10,6 +10,7 @@
 #include "collision/periodic/thermal_velocities.hpp"
 #include "collision/periodic/zone.hpp"
 #include "collision/world.hpp"
+#include "collision/world/body_keys.hpp"
 #include "kds/events/calendar_queue.hpp"
 
 #include <Eigen/Core>
@@ -150,7 +151,6 @@ class PeriodicWorld final : private WorldListener<Degree> {
     double last_contact = -never;  ///< s
     std::int64_t shift = 0;        ///< under shear: periods in x of its image in the layer above
     std::array<Zone, 4> zones{};   ///< of x, y, z, and of the image's x in the layer above
-    std::uint32_t generation = 0;  ///< as in body_id.hpp
     bool alive = false;
     bool certain = false;  ///< whether its time in the queue is exact
     // ... and what few need is not.
@@ -163,8 +163,8 @@ class PeriodicWorld final : private WorldListener<Degree> {
 
     template <class Archive>
     void archive(Archive& to) {
-      to(alive, generation, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at,
-         crossings, shift, zones, images);
+      to(alive, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at, crossings, shift,
+         zones, images);
     }
   };
   /// What a slot of the world is: a body, or an image of one.
@@ -186,7 +186,7 @@ class PeriodicWorld final : private WorldListener<Degree> {
   const Real& real(BodyId id) const;
   Real& real(BodyId id) { return const_cast<Real&>(std::as_const(*this).real(id)); }
   BodySlot slot_of(const Real& body) const { return static_cast<BodySlot>(&body - reals_.data()); }
-  BodyId id_of(BodySlot slot) const { return body_id(reals_[slot].generation, slot); }
+  BodyId id_of(BodySlot slot) const { return keys_.id(slot); }
   const Role& role(BodyId in_world) const { return roles_[body_slot(in_world)]; }
   void set_role(BodyId in_world, BodySlot owner, const Offset& offset);
   void take_up(Real& body, const Motion& motion);
@@ -214,7 +214,7 @@ class PeriodicWorld final : private WorldListener<Degree> {
   bool correct(Real& body, int which);
   void leave(Real& body, int which, int side);
   std::vector<Offset> needed_images(const Real& body) const;
-  void settle(Real& body);
+  void update_place(Real& body);
   void match_images(Real& body);
   void add_image(Real& body, const Offset& offset);
   void end_image(const Image& image);
@@ -227,13 +227,15 @@ class PeriodicWorld final : private WorldListener<Degree> {
   Listener* listener_;
   World<Degree> world_;
   std::vector<Real> reals_;     ///< by slot of the bodies' ids
+  BodyKeys keys_;               ///< of reals_
   std::vector<BodySlot> free_;  ///< places in reals_, the last that became free at the end
   std::vector<Role> roles_;     ///< by slot of the world
   std::size_t size_ = 0;
   double greatest_radius_ = 0;
-  double slack_ = 0;         ///< Ends::slack
-  bool told_ = false;        ///< an event has been told since the step began
-  CalendarQueue<> leaving_;  ///< slots: when a coordinate of a body leaves its zone, or a time before
+  double slack_ = 0;   ///< Ends::slack
+  bool told_ = false;  ///< an event has been told since the step began
+  /// When a coordinate of a body leaves its zone, or a time before.
+  CalendarQueue<BodyRank> leaving_{BodyRank{&keys_}};
   ThermalVelocities thermal_;
   PeriodicCounters counters_;
 };

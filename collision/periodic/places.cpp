@@ -91,11 +91,11 @@ void PeriodicWorld<Degree>::grow_reach(double radius) {
   for (Real& body : reals_) {
     if (!body.alive) continue;
     find_zones(body);
-    settle(body);
+    update_place(body);
   }
 }
 
-/// Finds the zones up to roundings, which settle() corrects.
+/// Finds the zones up to roundings, which update_place() corrects.
 template <int Degree>
 void PeriodicWorld<Degree>::find_zones(Real& body) {
   const Eigen::Vector3d x = world_.motion(body.in_world).position(now());
@@ -191,7 +191,7 @@ std::vector<Offset> PeriodicWorld<Degree>::needed_images(const Real& body) const
 
 /// Brings the body into the box, gives it the images that it needs there, and finds out when that changes.
 template <int Degree>
-void PeriodicWorld<Degree>::settle(Real& body) {
+void PeriodicWorld<Degree>::update_place(Real& body) {
   for (bool again = true; again;) {
     again = false;
     for (int which = 0; which <= layer_above; ++which) again |= follows(body, which) && correct(body, which);
@@ -271,7 +271,7 @@ void PeriodicWorld<Degree>::cross() {
   }
   const BodyId id = id_of(slot_of(body));
   const Offset before = body.crossings;
-  settle(body);
+  update_place(body);
   const Offset crossed = body.crossings + -before;
   if (crossed != Offset{}) listener_->wrapped(*this, id, crossed);
 }

@@ -26,7 +26,7 @@ inline bool accepts(const BodyFilter& filter, BodyId body) { return !filter || f
 /// By time, and bodies that are hit at the same time by the order in which they were added.
 inline bool sooner(const Hit& a, const Hit& b) {
   if (a.contact.time != b.contact.time) return a.contact.time < b.contact.time;
-  return body_rank(a.body) < body_rank(b.body);
+  return a.body < b.body;
 }
 
 }  // namespace detail

@@ -23,9 +23,7 @@ double offset_of(const PlacedShape& shape) {
 }
 
 bool before(const NearPair& x, const NearPair& y) {
-  const auto key = [](const NearPair& near) {
-    return std::tuple(near.approach.time, body_rank(near.pair.a), body_rank(near.pair.b));
-  };
+  const auto key = [](const NearPair& near) { return std::tuple(near.approach.time, near.pair.a, near.pair.b); };
   return key(x) < key(y);
 }
 
@@ -36,7 +34,7 @@ std::vector<BodyPair> contact_pairs(const BasicWorld<Motion>& world) {
   std::vector<BodyPair> pairs;
   world.visit_bodies([&](BodyId a) {
     world.visit_partners(a, [&](BodyId b) {
-      if (body_rank(a) < body_rank(b)) pairs.push_back({a, b});
+      if (a < b) pairs.push_back({a, b});
     });
   });
   return pairs;
@@ -63,16 +61,13 @@ std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double 
     bodies.push_back(id);
     offset = std::max(offset, offset_of<Motion>(shape));
   });
-  const auto counts = [&](BodyId id) {
-    return std::binary_search(bodies.begin(), bodies.end(), id,
-                              [](BodyId x, BodyId y) { return body_rank(x) < body_rank(y); });
-  };
+  const auto counts = [&](BodyId id) { return std::binary_search(bodies.begin(), bodies.end(), id); };
   std::vector<NearPair> near;
   const Vector3d reach = Vector3d::Constant(distance + offset);
   for (const BodyId a : bodies) {
     const PathOf<Motion>& path = path_of(world.motion(a));
     world.visit_swept(box_around(path, Vector3d(-reach), reach), until, [&](BodyId b) {
-      if (!(body_rank(a) < body_rank(b)) || !counts(b)) return;
+      if (!(a < b) || !counts(b)) return;
       const Approach approach = closest_approach(path, path_of(world.motion(b)), now, until);
       if (approach.distance < distance) near.push_back({{a, b}, approach});
     });

@@ -11,7 +11,7 @@
 
 namespace kds::collision {
 
-/// Two bodies of a world, a in the lower slot.
+/// Two bodies of a world, a with the lower id.
 struct BodyPair {
   BodyId a{};
   BodyId b{};
@@ -20,11 +20,11 @@ struct BodyPair {
 };
 
 /// All pairs of bodies that are in contact at now(): that touch or rest on each other, as World::visit_partners() says;
-/// by (a, b), in order of the slots. Throws what that throws. Cost: O(n) and O(pairs).
+/// by (a, b), in order of the ids. Throws what that throws. Cost: O(n) and O(pairs).
 template <class Motion>
 std::vector<BodyPair> contact_pairs(const BasicWorld<Motion>& world);
 
-/// Two bodies, a in the lower slot, and when their centres are nearest.
+/// Two bodies, a with the lower id, and when their centres are nearest.
 struct NearPair {
   BodyPair pair;
   Approach approach;

@@ -63,7 +63,7 @@ class Surroundings {
 
 bool nearer(const NearBody& a, const NearBody& b) {
   if (a.distance != b.distance) return a.distance < b.distance;
-  return body_rank(a.body) < body_rank(b.body);
+  return a.body < b.body;
 }
 
 /// The `count` bodies of the least measure(body).distance, which is not less than that of the boxes of the two.

@@ -17,7 +17,7 @@ struct Unbalanced {
   Vector3d linear, angular;
 };
 
-// Of a load the moment of inertia counts as mass times size squared. Which it is does not matter: all is to be zero.
+// The moment of inertia of a load is taken as mass times size squared: it only weighs errors, all of which go to zero.
 Unbalanced at_first(const Load& load) { return {load.acceleration, Vector3d::Zero()}; }
 Vector3d pushed_by(const Load& load, const Vector3d& force) { return force / load.mass; }
 Vector3d turned_by(const Load& load, const Vector3d& torque) { return torque / (load.mass * load.size * load.size); }

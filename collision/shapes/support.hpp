@@ -1,4 +1,4 @@
-// What a shape turns towards a direction.
+// The part of a shape that is farthest along a direction.
 #pragma once
 
 #include "collision/shapes/feature.hpp"

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -23,9 +22,7 @@ constexpr double jump_tolerance = 0x1p-40;
 template <class Motion>
 void Bodies<Motion>::refuse(BodyId id) const {
   const BodySlot slot = body_slot(id);
-  const bool free = std::find(free_.begin(), free_.end(), slot) != free_.end();
-  const bool retired = slot < bodies_.size() && !bodies_[slot].alive && !free;
-  const bool removed = body_generation(id) < generation(slot) || (retired && body_generation(id) == generation(slot));
+  const bool removed = slot < slots() && body_generation(id) <= keys_.generation(slot);
   throw std::out_of_range("World: there is no body " + std::to_string(id) + " (generation " +
                           std::to_string(body_generation(id)) + " of slot " + std::to_string(slot) + "): it " +
                           (removed ? "was removed" : "has never been there"));
@@ -49,7 +46,7 @@ bool Bodies<Motion>::is_jump(BodySlot slot, const Motion& to, double t) const {
 
 template <class Motion>
 inline BodySlot Bodies<Motion>::new_slot() {
-  if (!free_.empty()) {
+  if (!free_.empty() && keys_.can_give(free_.back())) {
     const BodySlot slot = free_.back();
     free_.pop_back();
     return slot;
@@ -66,6 +63,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
                              const Motion& motion) {
   const double ball = ball_radius(shape ? shape->shape : description.shape);
   const BodySlot slot = new_slot();
+  keys_.give(slot);
   Body& added = bodies_[slot];
   added.bounding_radius = shape ? shape->bounding_radius : ball;
   added.shape = std::move(shape);
@@ -102,8 +100,8 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
   filters_ = filters_ || filter(slot) != CollisionFilter{};
   sensors_ = sensors_ || bodies_[slot].sensor;
   ++alive_;
-  if (numbers_.size() <= slot) numbers_.resize(bodies_.size());
-  numbers_[slot] = from.number(of);
+  keys_.set_number(slot, from.number(of));
+  keys_.set_generation(slot, from.keys_.generation(of));
   return slot;
 }
 
@@ -143,9 +141,6 @@ void Bodies<Motion>::remove(BodySlot slot) {
   ignored_.forget(slot);
   attachments_.detach(slot);
   --alive_;
-  if (generations_.size() <= slot) generations_.resize(bodies_.size());
-  if (generations_[slot] == last_generation) return;
-  ++generations_[slot];
   free_.push_back(slot);
 }
 
@@ -243,7 +238,7 @@ typename Bodies<Motion>::Image Bodies<Motion>::image() const {
   Image image;
   image.meshes = meshes();
   for (BodySlot slot = 0; slot < bodies_.size(); ++slot) describe(slot, image.bodies.emplace_back(), image.meshes);
-  image.generations = generations_, image.free = free_;
+  image.generations = keys_.generations(), image.next_id = keys_.next_id(), image.free = free_;
   std::copy_if(waiting().begin(), waiting().end(), std::back_inserter(image.waiting),
                [](BodySlot slot) { return slot != no_body; });
   image.ignored = ignored_.pairs(), image.attached = attachments_.all();
@@ -254,7 +249,7 @@ template <class Motion>
 typename Bodies<Motion>::Image Bodies<Motion>::image_without_bodies() const {
   Image image;
   image.elsewhere = {.slots = lent_ > 0 ? lent_ : bodies_.size(), .bodies = alive_};
-  image.generations = generations_, image.free = free_;
+  image.generations = keys_.generations(), image.next_id = keys_.next_id(), image.free = free_;
   image.ignored = ignored_.pairs(), image.attached = attachments_.all();
   return image;
 }
@@ -270,10 +265,10 @@ typename Bodies<Motion>::Image Bodies<Motion>::image_of(std::span<const BodySlot
 }
 
 template <class Motion>
-BodySlot Bodies<Motion>::put(const Image& image, std::size_t place, BodySlot number) {
+BodySlot Bodies<Motion>::put(const Image& image, std::size_t place, BodySlot number, const Bodies& whole) {
   const BodySlot slot = new_slot();
-  if (numbers_.size() <= slot) numbers_.resize(bodies_.size());
-  numbers_[slot] = number;
+  keys_.set_number(slot, number);
+  keys_.set_generation(slot, whole.keys_.generation(number));
   become(slot, image.bodies[place]);
   return slot;
 }
@@ -281,12 +276,6 @@ BodySlot Bodies<Motion>::put(const Image& image, std::size_t place, BodySlot num
 template <class Motion>
 void Bodies<Motion>::put_back(const Image& image, std::size_t place, BodySlot slot) {
   become(slot, image.bodies[place]);
-}
-
-template <class Motion>
-void Bodies<Motion>::number_from(BodySlot first) {
-  numbers_.resize(bodies_.size());
-  std::iota(numbers_.begin(), numbers_.end(), first);
 }
 
 template <class Motion>
@@ -303,13 +292,13 @@ void Bodies<Motion>::lend() {
 template <class Motion>
 void Bodies<Motion>::lend(std::size_t bodies) {
   lent_ = alive_ = bodies;
+  keys_.become({}, bodies);
 }
 
 template <class Motion>
 bool Bodies<Motion>::has_lent(BodyId id) const {
   const BodySlot slot = body_slot(id);
-  return slot < lent_ && generation(slot) == body_generation(id) &&
-         std::find(free_.begin(), free_.end(), slot) == free_.end();
+  return slot < lent_ && keys_.id(slot) == id && std::find(free_.begin(), free_.end(), slot) == free_.end();
 }
 
 template <class Motion>
@@ -330,7 +319,8 @@ void Bodies<Motion>::set_shape(BodySlot slot, PlacedShape placed) {
 
 template <class Motion>
 void Bodies<Motion>::become(const Image& image) {
-  generations_ = image.generations, free_ = image.free;
+  keys_.become(image.generations, image.next_id);
+  free_ = image.free;
   const std::size_t count = image.bodies.size();
   bodies_.clear(), movers_.clear();
   bodies_.resize(count), movers_.resize(count);

@@ -9,6 +9,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/world/attachments.hpp"
+#include "collision/world/body_keys.hpp"
 #include "collision/world/ignored_pairs.hpp"
 #include "kds/large_vector.hpp"
 
@@ -43,9 +44,6 @@ struct CollisionFilter {
   }
   friend bool operator==(const CollisionFilter&, const CollisionFilter&) = default;
 };
-
-/// The generation of the last body that a slot can have.
-inline constexpr std::uint32_t last_generation = ~std::uint32_t{0};
 
 namespace detail {
 
@@ -111,11 +109,10 @@ class Moving : private std::optional<PlacedShape>, public MovingShape<Motion> {
 
 /// The bodies of a world by slot, their ids, and which of them are about to enter.
 ///
-/// A body that is added gets the slot that became free last, with the next generation: so which slots bodies get is a
-/// function of what callers do. A slot whose generations are used up, after 2^32 bodies, is retired: it stays empty.
+/// A body that is added gets the slot that became free last, and the next id (body_keys.hpp); a new slot when the
+/// generations are used up, which takes at least 2^32 bodies in slots that are given again.
 ///
-/// Cost: O(1) each; memory for the largest number of bodies at any one time. Worlds from which nothing is removed store
-/// no generations.
+/// Cost: O(1) each; memory for the largest number of bodies at any one time.
 template <class Motion>
 class Bodies {
  public:
@@ -126,7 +123,7 @@ class Bodies {
   using Mover = certificates::MovingBall<Motion::degree>;  ///< path and radius, for the tests of balls
 
   std::size_t size() const { return alive_; }
-  bool contains(BodyId id) const { return alive(body_slot(id)) && generation(body_slot(id)) == body_generation(id); }
+  bool contains(BodyId id) const { return alive(body_slot(id)) && keys_.id(body_slot(id)) == id; }
   /// The slot of a body. Throws std::out_of_range, naming the id and saying whether the body was removed, if there is
   /// no such body.
   BodySlot slot_of(BodyId id) const {
@@ -135,7 +132,7 @@ class Bodies {
     return body_slot(id);
   }
   /// The id of the body in a slot. Precondition: there is one.
-  BodyId id_of(BodySlot slot) const { return body_id(generation(slot), slot); }
+  BodyId id_of(BodySlot slot) const { return keys_.id(slot); }
 
   /// All slots are below this.
   std::size_t slots() const { return bodies_.size(); }
@@ -239,17 +236,21 @@ class Bodies {
   /// Takes those that have waited longest, all or so many. Cost: O(1) a body that is taken, or has been removed.
   std::vector<BodySlot> take_waiting(std::size_t most);
 
-  /// By slot, the number of a body: the order of events of one time, and of the two bodies of a pair, is the order of
-  /// numbers. Where the bodies are those of another world (transfer.cpp), it is the slot that the body has there;
-  /// otherwise the slot itself, and this is empty.
-  const LargeVector<BodySlot>& numbers() const { return numbers_; }
-  bool numbered() const { return !numbers_.empty(); }
-  BodySlot number(BodySlot slot) const { return numbers_.empty() ? slot : numbers_[slot]; }
+  /// The order of bodies.
+  const BodyKeys& keys() const { return keys_; }
+  bool before(BodySlot a, BodySlot b) const { return keys_.before(a, b); }
+  std::pair<BodySlot, BodySlot> in_order(BodySlot a, BodySlot b) const {
+    return before(b, a) ? std::pair(b, a) : std::pair(a, b);
+  }
+  /// Whether the bodies are those of another world (transfer.cpp), and the slot that one has there; otherwise its slot
+  /// here.
+  bool numbered() const { return keys_.numbered(); }
+  BodySlot number(BodySlot slot) const { return keys_.number(slot); }
   /// Adds a body of another world as it is there. It has not entered.
   BodySlot take_in(const Bodies& from, BodySlot slot);
 
   /// The bodies have these numbers, in the order of their slots.
-  void number_from(BodySlot first);
+  void number_from(BodySlot first) { keys_.number_from(first, bodies_.size()); }
   // Bodies that several processes have, each a part (transfer.cpp).
   /// Others have the bodies from now on. This keeps which bodies there are, their ids, attachments, and ignored pairs.
   /// Until take_back() there are no slots.
@@ -267,9 +268,9 @@ class Bodies {
   Image image_without_bodies() const;
   /// Bodies in this order, without attachments and ignored pairs. `meshes`: all that the bodies may have.
   Image image_of(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
-  /// Adds the body that has this place in such an image, unchanged: with that number, or in the empty slot that is the
-  /// number.
-  BodySlot put(const Image& image, std::size_t place, BodySlot number);
+  /// Adds the body that has this place in such an image, unchanged: with the id of the world `whole` in which that
+  /// number is its slot, or in an empty slot.
+  BodySlot put(const Image& image, std::size_t place, BodySlot number, const Bodies& whole);
   void put_back(const Image& image, std::size_t place, BodySlot slot);
   /// Precondition: the image has been checked.
   void become(const Image& image);
@@ -278,7 +279,6 @@ class Bodies {
 
  private:
   [[noreturn]] void refuse(BodyId id) const;
-  std::uint32_t generation(BodySlot slot) const { return slot < generations_.size() ? generations_[slot] : 0; }
   BodySlot new_slot();
   void wait_no_more(BodySlot slot);
   template <class One>
@@ -289,11 +289,9 @@ class Bodies {
   LargeVector<Mover> movers_;
   LargeVector<Motion> motions_;  ///< by slot, where bodies turn
   LargeVector<Body> bodies_;
-  /// By slot, up to the last from which a body was removed: the generation of the body that is there, or of the next.
-  std::vector<std::uint32_t> generations_;
+  BodyKeys keys_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;  ///< and before them those that have been taken, taken_ of them
-  LargeVector<BodySlot> numbers_;
   IgnoredPairs ignored_;
   Attachments attachments_;
   std::size_t alive_ = 0;

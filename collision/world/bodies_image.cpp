@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -79,7 +80,7 @@ void Bodies<Motion>::Image::archive(Archive& archive, const std::vector<std::sha
   archive.each(meshes, [&](auto& one) { mesh(archive, one, known); });
   archive(elsewhere.slots, elsewhere.bodies, elsewhere.numbers);
   archive_bodies(archive);
-  archive(generations, free, waiting);
+  archive(generations, next_id, free, waiting);
   archive.each(ignored, [&](auto& pair) { archive(pair.first, pair.second); });
   archive.each(attached, [&](auto& pair) { archive(pair.first, pair.second); });
 }
@@ -88,6 +89,7 @@ template <class Motion>
 template <class Archive>
 void Bodies<Motion>::Image::archive_bodies(Archive& archive) {
   archive.each(bodies, [&](One& one) { body(archive, one); });
+  if constexpr (Archive::loading) next_id = bodies.size();
 }
 
 template <class Motion>
@@ -104,28 +106,28 @@ bool Bodies<Motion>::Image::may_collide(BodySlot a, BodySlot b) const {
          !std::binary_search(ignored.begin(), ignored.end(), IgnoredPairs::pair(a, b));
 }
 
-/// Checks free slots and generations.
+/// Checks free slots and ids.
 template <class Motion>
 void Bodies<Motion>::Image::check_free() const {
   const std::size_t slots = lent() ? elsewhere.slots : bodies.size();
   if (slots > no_body) image::fail("bodies: there are more than there are slots");
   if (generations.size() > slots) image::fail("generations: there are more than there are slots");
-  std::vector<char> listed(generations.size());
+  std::set<BodySlot> listed;
   for (std::size_t i = 0; i < free.size(); ++i) {
     const BodySlot slot = free[i];
-    image::require(slot < slots && !alive(slot), "free", i, "is no free slot, or listed twice");
-    image::require(generation(slot) > 0, "free", i, "is of a slot from which no body was removed");
-    image::require(!std::exchange(listed[slot], 1), "free", i, "is no free slot, or listed twice");
+    image::require(slot < slots && !alive(slot) && listed.insert(slot).second, "free", i,
+                   "is no free slot, or listed twice");
   }
   for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
-    const bool is_listed = slot < listed.size() && listed[slot] != 0;
-    const bool retired = generation(slot) == last_generation;
-    image::require(bodies[slot].alive || is_listed || retired, "bodies", slot, "its slot is free, and not listed");
+    image::require(bodies[slot].alive || listed.contains(slot), "bodies", slot, "its slot is free, and not listed");
   }
+  for (BodySlot slot = 0; slot < generations.size(); ++slot) {
+    image::require(id_of(slot) < next_id, "generations", slot, "is not before the next one");
+  }
+  if (slots > 0 && id_of(static_cast<BodySlot>(slots - 1)) >= next_id)
+    image::fail("bodies: the next one has an old id");
   if (!lent()) return;
-  if (elsewhere.bodies > slots - free.size()) image::fail("bodies: more are elsewhere than have slots");
-  // The other slots are retired, and so have generations.
-  if (slots - free.size() - elsewhere.bodies > generations.size()) image::fail("bodies: there are slots of none");
+  if (elsewhere.bodies != slots - free.size()) image::fail("bodies: not as many are elsewhere as have slots");
   if (!bodies.empty() || !waiting.empty()) image::fail("bodies: they are elsewhere, and here");
 }
 

@@ -50,9 +50,10 @@ struct Bodies<Motion>::Image {
   };
 
   std::vector<std::shared_ptr<const Mesh>> meshes;
-  Lent elsewhere{};         ///< then there are none here, and none waits
-  std::vector<One> bodies;  // by slot
-  std::vector<std::uint32_t> generations;
+  Lent elsewhere{};                        ///< then there are none here, and none waits
+  std::vector<One> bodies;                 // by slot
+  std::vector<std::uint32_t> generations;  ///< as BodyKeys
+  BodyId next_id = 0;
   std::vector<BodySlot> free, waiting;
   std::vector<std::pair<BodySlot, BodySlot>> ignored;   ///< lower slot first, in order
   std::vector<std::pair<BodySlot, BodySlot>> attached;  ///< sensor and owner, in order
@@ -62,12 +63,13 @@ struct Bodies<Motion>::Image {
   bool entered(BodySlot slot) const { return alive(slot) && bodies[slot].entered; }
   std::uint32_t generation(BodySlot slot) const { return slot < generations.size() ? generations[slot] : 0; }
   /// Whether a body is there; whether it has entered; whether it was removed.
-  bool there(BodyId id) const { return alive(body_slot(id)) && body_generation(id) == generation(body_slot(id)); }
+  BodyId id_of(BodySlot slot) const { return body_id(generation(slot), slot); }
+  bool before(BodySlot a, BodySlot b) const { return id_of(a) < id_of(b); }
+  bool there(BodyId id) const { return alive(body_slot(id)) && id == id_of(body_slot(id)); }
   bool present(BodyId id) const { return there(id) && entered(body_slot(id)); }
   bool removed(BodyId id) const {
     const BodySlot slot = body_slot(id);
-    const bool last = !alive(slot) && body_generation(id) == last_generation;
-    return slot < bodies.size() && (body_generation(id) < generation(slot) || last);
+    return slot < bodies.size() && body_generation(id) <= generation(slot) && !there(id);
   }
 
   BodySlot owner(BodySlot slot) const;
@@ -78,7 +80,7 @@ struct Bodies<Motion>::Image {
   template <class Archive>
   void archive(Archive& archive, const std::vector<std::shared_ptr<const Mesh>>& known);
 
-  /// The bodies alone, whose meshes are among `meshes`.
+  /// The bodies alone, whose meshes are among `meshes`. Loading gives them the ids 0, 1, ...
   template <class Archive>
   void archive_bodies(Archive& archive);
 

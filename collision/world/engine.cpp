@@ -346,6 +346,8 @@ bool Engine<Motion>::advance_for(double budget_seconds, double t) {
 template <class Motion>
 void Engine<Motion>::start_pieces() {
   auto pieces = scripts_.take_next(part_of_work(), [&](BodySlot slot) { return !bodies_[slot].entered; });
+  std::sort(pieces.begin(), pieces.end(),
+            [this](const auto& x, const auto& y) { return bodies_.before(x.slot, y.slot); });
   std::vector<char> jumps;
   for (auto& [slot, motion] : pieces) {
     if constexpr (turns<Motion>) {

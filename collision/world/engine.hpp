@@ -143,8 +143,8 @@ class Engine final : private RestingListener<BodyMotionType> {
   bool has_met(BodySlot slot) const { return resting_.has_met(slot); }
   /// Bodies of a world that only stores a part of them, as plain data. `meshes`: all meshes of the scene.
   Parcel<Motion> pack(std::span<const BodySlot> slots, std::vector<std::shared_ptr<const Mesh>> meshes) const;
-  /// Stores those of a parcel, with their numbers; attach() follows. Returns the slots, in the same order.
-  std::vector<BodySlot> store(const Parcel<Motion>& parcel);
+  /// Stores those of a parcel, whose numbers are slots of `whole`; attach() follows. Returns the slots, in order.
+  std::vector<BodySlot> store(const Parcel<Motion>& parcel, const Engine& whole);
   void attach(BodySlot sensor, BodySlot owner) { bodies_.attach(sensor, owner); }
   /// Forgets bodies that have been stored.
   void forget(std::span<const BodySlot> slots);

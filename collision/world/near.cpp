@@ -35,11 +35,11 @@ void Engine<Motion>::answer(const char* function, const Ask& ask, const Meets& m
   for (const BodySlot slot : bodies_.waiting()) {
     if (bodies_.alive(slot) && !bodies_.entered(slot)) look(slot);
   }
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
   std::vector<BodyId> named;  // all are collected first, since `visit` may change the world
   named.reserve(found.size());
   for (const BodySlot slot : found) named.push_back(bodies_.id_of(slot));
+  std::sort(named.begin(), named.end());
+  named.erase(std::unique(named.begin(), named.end()), named.end());
   for (const BodyId id : named) visit(id);
 }
 

@@ -20,8 +20,8 @@ Pairs<Motion>::Pairs(const Bodies<Motion>& bodies, const Volumes<Motion>& volume
       clock_(clock),
       counters_(counters),
       profile_(profile),
-      contacts_(detail::PairRank{&pairs_, &bodies.numbers()}),
-      boxes_(detail::PairRank{&pairs_, &bodies.numbers()}) {}
+      contacts_(detail::PairRank{&pairs_, &bodies.keys()}),
+      boxes_(detail::PairRank{&pairs_, &bodies.keys()}) {}
 
 /// Reserves room for these pairs and some more, if they are the first.
 template <class Motion>
@@ -73,12 +73,12 @@ void Pairs<Motion>::pair_began(BodySlot a, BodySlot b, double t) {
   mark_dirty(slot);
   if (!options_.report_pairs) return;
   pair.boxes_overlap = !exact_ && unbounded(pair);
-  if (exact_ || pair.boxes_overlap) report_boxes(true, a, b);
+  if (exact_ || pair.boxes_overlap) report_boxes(true, pair.a, pair.b);
 }
 
 template <class Motion>
 inline typename Pairs<Motion>::Slot Pairs<Motion>::add(BodySlot a, BodySlot b) {
-  if (bodies_.number(a) > bodies_.number(b)) std::swap(a, b);
+  if (bodies_.before(b, a)) std::swap(a, b);
   Slot slot;
   if (free_.empty()) {
     slot = static_cast<Slot>(pairs_.size());

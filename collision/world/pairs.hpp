@@ -31,7 +31,7 @@ namespace detail {
 
 using PairSlot = std::uint32_t;
 
-/// Two bodies that may meet, the one with the lower number first. It exists while the broad phase lists it, and while
+/// Two bodies that may meet, in their order (BodyKeys). It exists while the broad phase lists it, and while
 /// the two overlap: so its state is a function of the history of the two bodies, whatever the broad phase.
 struct Pair {
   BodySlot a = 0, b = 0;
@@ -48,15 +48,11 @@ struct Pair {
   double passes_at = -never;  ///< at this time it counts as overlapping, whatever else happens then
 };
 
-/// The order of pairs: by the numbers of their bodies (Bodies::numbers).
+/// The order of pairs: by the keys of their bodies.
 struct PairRank {
-  const LargeVector<Pair>* pairs = nullptr;
-  const LargeVector<BodySlot>* numbers = nullptr;
-  std::uint64_t operator()(std::uint32_t slot) const {
-    const auto [a, b] = std::pair((*pairs)[slot].a, (*pairs)[slot].b);
-    if (numbers->empty()) return std::uint64_t{a} << 32 | b;
-    return std::uint64_t{(*numbers)[a]} << 32 | (*numbers)[b];
-  }
+  const LargeVector<Pair>* pairs;
+  const BodyKeys* keys;
+  PairKey operator()(std::uint32_t slot) const { return {keys->key((*pairs)[slot].a), keys->key((*pairs)[slot].b)}; }
 };
 
 }  // namespace detail

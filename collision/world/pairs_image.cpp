@@ -74,7 +74,8 @@ void Pairs<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, d
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const Pair& pair = pairs[i].pair;
     const auto need = [i](bool right, const char* what) { image::require(right, "pairs", i, what); };
-    need(pair.a < pair.b && bodies.entered(pair.a) && bodies.entered(pair.b), "is not of two bodies in the world");
+    need(bodies.before(pair.a, pair.b) && bodies.entered(pair.a) && bodies.entered(pair.b),
+         "is not of two bodies in the world");
     const auto& a = bodies.bodies[pair.a];
     const auto& b = bodies.bodies[pair.b];
     need(bodies.may_collide(pair.a, pair.b), "is of bodies that never meet");

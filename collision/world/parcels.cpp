@@ -37,11 +37,11 @@ void Engine<Motion>::resume(const Parcel<Motion>& parcel, std::size_t place, Bod
 }
 
 template <class Motion>
-std::vector<BodySlot> Engine<Motion>::store(const Parcel<Motion>& parcel) {
+std::vector<BodySlot> Engine<Motion>::store(const Parcel<Motion>& parcel, const Engine& whole) {
   std::vector<BodySlot> slots;
   slots.reserve(parcel.numbers.size());
   for (std::size_t i = 0; i < parcel.numbers.size(); ++i) {
-    const BodySlot slot = bodies_.put(parcel.bodies, i, parcel.numbers[i]);
+    const BodySlot slot = bodies_.put(parcel.bodies, i, parcel.numbers[i], whole.bodies_);
     resume(parcel, i, slot);
     if (!bodies_[slot].entered && has_begun(slot)) bodies_.wait(slot);
     slots.push_back(slot);

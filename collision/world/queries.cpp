@@ -24,16 +24,16 @@ void Engine<Motion>::visit_partners(BodyId id, BodyVisitor visit) const {
   const BodySlot slot = bodies_.slot_of(id);
   std::vector<BodySlot> found = resting_.partners(slot);
   pairs_.visit_overlapped(slot, [&](BodySlot other) { found.push_back(other); });
-  std::sort(found.begin(), found.end());
-  found.erase(std::unique(found.begin(), found.end()), found.end());
   std::vector<BodyId> ids;
   for (const BodySlot other : found) ids.push_back(bodies_.id_of(other));
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   for (const BodyId other : ids) visit(other);
 }
 
 template <class Motion>
 bool Engine<Motion>::resting(BodyId a, BodyId b) const {
-  const auto [first, second] = std::minmax({bodies_.slot_of(a), bodies_.slot_of(b)});
+  const auto [first, second] = bodies_.in_order(bodies_.slot_of(a), bodies_.slot_of(b));
   return resting_.holds(first, second);
 }
 

@@ -11,7 +11,7 @@ bool detail::Pending::operator<(const Pending& other) const {
   const auto key = [](const Pending& event) {
     // Volumes that meet and volumes that part are reported together.
     const Kind stage = event.kind == Kind::pair_began ? Kind::pair_ended : event.kind;
-    return std::tuple(stage, body_rank(event.a), body_rank(event.b), event.kind, event.wall);
+    return std::tuple(stage, event.a, event.b, event.kind, event.wall);
   };
   return key(*this) < key(other);
 }

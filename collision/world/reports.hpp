@@ -29,7 +29,7 @@ struct Pending {
     separation,
     overlap
   } kind;
-  BodyId a, b;  ///< in order of their ranks; b is a where it is about one body
+  BodyId a, b;  ///< a <= b; b is a where it is about one body
   Contact contact;
   int wall = -1;                  ///< of a body that rests at one, or ceases to
   std::uint64_t user_data_a = 0;  ///< of bodies that have been removed

@@ -40,7 +40,7 @@ void check_reports(const std::vector<Reports::Report>& pending, const BodiesImag
       need(known && event.b == event.a, "is not of a body in the world");
     } else {
       const bool itself = event.a == event.b && (event.kind == Kind::overlap || event.kind == Kind::separation);
-      need(itself || body_slot(event.a) < body_slot(event.b), "is of no pair");
+      need(itself || event.a < event.b, "is of no pair");
       const bool of_present = bodies.present(event.a) && bodies.present(event.b);
       const auto known = [&](BodyId id) { return bodies.present(id) || bodies.removed(id); };
       need(of_present || (known(event.a) && known(event.b)), "is not of two bodies that are or were in the world");

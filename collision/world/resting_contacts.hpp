@@ -30,10 +30,13 @@ namespace detail {
 
 using RestingSlot = std::uint32_t;
 
+/// The order of resting contacts: by the keys of their bodies, those at walls last.
 struct RestingRank {
-  const std::vector<RestingContact>* contacts = nullptr;
-  std::uint64_t operator()(std::uint32_t slot) const {
-    return std::uint64_t{(*contacts)[slot].a} << 32 | (*contacts)[slot].b;
+  const std::vector<RestingContact>* contacts;
+  const BodyKeys* keys;
+  PairKey operator()(std::uint32_t slot) const {
+    const RestingContact& contact = (*contacts)[slot];
+    return {keys->key(contact.a), contact.b == no_body ? ~BodyId{0} : keys->key(contact.b)};
   }
 };
 
@@ -94,7 +97,8 @@ class RestingContacts {
         clock_(clock),
         gaps_(bodies, options.walls, clock),
         listener_(listener),
-        releases_(detail::RestingRank{&contacts_}) {}
+        releases_(detail::RestingRank{&contacts_, &bodies.keys()}),
+        spans_(BodyRank{&bodies.keys()}) {}
   RestingContacts(const RestingContacts&) = delete;
   RestingContacts& operator=(const RestingContacts&) = delete;
 
@@ -102,7 +106,7 @@ class RestingContacts {
   bool empty() const { return contacts_.size() == free_.size(); }
   /// Whether nothing rests and there is no cluster: then only has_met() decides what comes to rest later.
   bool remembers_nothing() const { return empty() && spans_.empty(); }
-  /// A contact of a and b (a < b), or of a and a wall (b: no_body); `none` if there is none.
+  /// A contact of a and b, in their order, or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
   /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.
   bool holds(BodySlot a, BodySlot b, int wall = -1) const {
@@ -290,7 +294,7 @@ class RestingContacts {
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodySlot> disturbed_;
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
-  DaryQueue<> spans_;                        ///< when spans end; slots are bodies, the first of each cluster
+  DaryQueue<BodyRank> spans_;                ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;
 };
 

@@ -68,7 +68,7 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
     if (at_wall) {
       need(options.walls && contact.wall >= 0 && contact.wall < 6, "is at no wall");
     } else {
-      need(contact.a < contact.b && bodies.entered(contact.b) && contact.wall == -1,
+      need(bodies.before(contact.a, contact.b) && bodies.entered(contact.b) && contact.wall == -1,
            "is not of two bodies in the world");
       need(options.response == Response::elastic, "is of two bodies in a mode without resting contacts");
     }

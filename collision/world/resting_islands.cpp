@@ -116,8 +116,8 @@ bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
   return true;
 }
 
-/// The bodies that lean on each other, directly or not, but not through fixed ones; in the order of their ids, so that
-/// the arithmetic does not depend on how they were found.
+/// The bodies that lean on each other, directly or not, but not through fixed ones; in their order, so that the
+/// arithmetic does not depend on how they were found.
 template <class Motion>
 typename RestingContacts<Motion>::Island RestingContacts<Motion>::find_island(BodySlot id) {
   ++islands_;
@@ -139,18 +139,19 @@ typename RestingContacts<Motion>::Island RestingContacts<Motion>::find_island(Bo
       if (other != no_body) visit(other);
     }
   }
-  std::sort(island.bodies.begin(), island.bodies.end());
+  const auto before = [this](BodySlot x, BodySlot y) { return bodies_.before(x, y); };
+  std::sort(island.bodies.begin(), island.bodies.end(), before);
   island.free = island.bodies.size();
-  std::sort(anchored.begin(), anchored.end());
+  std::sort(anchored.begin(), anchored.end(), before);
   island.bodies.insert(island.bodies.end(), anchored.begin(), anchored.end());
   for (std::size_t i = 0; i < island.bodies.size(); ++i) {
     of_[island.bodies[i]].place = static_cast<std::uint32_t>(i);
   }
-  std::sort(island.contacts.begin(), island.contacts.end(), [this](Slot x, Slot y) {
+  const detail::RestingRank rank{&contacts_, &bodies_.keys()};
+  std::sort(island.contacts.begin(), island.contacts.end(), [&](Slot x, Slot y) {
     const Contact& of_x = contacts_[x];
     const Contact& of_y = contacts_[y];
-    if (of_x.a != of_y.a) return of_x.a < of_y.a;
-    if (of_x.b != of_y.b) return of_x.b < of_y.b;
+    if (of_x.a != of_y.a || of_x.b != of_y.b) return rank(x) < rank(y);
     if (of_x.wall != of_y.wall) return of_x.wall < of_y.wall;
     return std::lexicographical_compare(of_x.normal.begin(), of_x.normal.end(), of_y.normal.begin(), of_y.normal.end());
   });

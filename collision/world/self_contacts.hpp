@@ -23,7 +23,8 @@ class SelfContacts {
  public:
   static constexpr Stage stage = Stage::reported;
 
-  SelfContacts(const Bodies<Motion>& bodies, const Clock& clock) : bodies_(bodies), clock_(clock) {}
+  SelfContacts(const Bodies<Motion>& bodies, const Clock& clock)
+      : bodies_(bodies), clock_(clock), times_(BodyRank{&bodies.keys()}) {}
 
   /// A body has entered. True if it touches itself.
   bool enter(BodySlot slot);
@@ -74,7 +75,7 @@ class SelfContacts {
   const Bodies<Motion>& bodies_;
   const Clock& clock_;
   std::vector<char> touching_;  ///< by body
-  DaryQueue<> times_;           ///< slots are bodies
+  DaryQueue<BodyRank> times_;   ///< slots are bodies
 };
 
 #define KDS_DECLARE(motion) extern template class SelfContacts<motion>;

@@ -67,7 +67,11 @@ bool surely_overlap_rounded(const KineticBox<Degree>& a, const KineticBox<Degree
 
 template <class Motion>
 Volumes<Motion>::Volumes(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
-    : bodies_(bodies), options_(options), clock_(clock), directions_(directions_of(options)) {}
+    : bodies_(bodies),
+      options_(options),
+      clock_(clock),
+      directions_(directions_of(options)),
+      ends_(BodyRank{&bodies.keys()}) {}
 
 template <class Motion>
 Kdops<Motion::degree> Volumes<Motion>::kdops() const {

@@ -58,7 +58,6 @@ class Volumes {
 
   /// A mesh is added: true if it is the first. Then the volumes of all bodies change.
   bool make_room_for_meshes() { return !std::exchange(meshes_, true); }
-  bool has_room_for_meshes() const { return meshes_; }
 
   /// Whether any body has or had a caller's function; and whether this one has.
   bool any_from_callers() const { return !given_.empty(); }
@@ -140,7 +139,7 @@ class Volumes {
   std::vector<std::optional<BendingBounds>> bent_;  ///< by body, up to the last that bends: of the present piece
   std::vector<KdopDirection> directions_;           ///< beyond the axes
   std::vector<std::array<double, 2>> extents_;      ///< by body and direction
-  DaryQueue<> ends_;                                ///< slots are bodies
+  DaryQueue<BodyRank> ends_;                        ///< slots are bodies
   bool meshes_ = false;                             ///< there is or has been one
   bool calling_ = false;
 };

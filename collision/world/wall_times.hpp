@@ -30,7 +30,7 @@ class WallTimes {
   using Entry = typename BroadPhase<Motion::degree>::Entry;
 
   WallTimes(const Bodies<Motion>& bodies, const std::optional<Walls>& walls, const Clock& clock)
-      : bodies_(bodies), walls_(walls), clock_(clock) {}
+      : bodies_(bodies), walls_(walls), clock_(clock), times_(BodyRank{&bodies.keys()}) {}
 
   /// Bodies have entered, or one has another motion.
   void schedule(std::span<const Entry> entries);
@@ -74,7 +74,7 @@ class WallTimes {
   const Bodies<Motion>& bodies_;
   const std::optional<Walls>& walls_;
   const Clock& clock_;
-  CalendarQueue<> times_;  ///< slots are bodies
+  CalendarQueue<BodyRank> times_;  ///< slots are bodies
   /// By body: the wall that it reaches at its time, or `none_yet` if that is only a bound.
   std::vector<signed char> wall_;
 };

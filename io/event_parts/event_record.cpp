@@ -55,7 +55,15 @@ DomainEvent::Kind to_domain_kind(EventKind kind) {
 
 Event to_event(const DomainEvent& event) {
   const auto& c = event.contact;
-  return {c.time, to_event_kind(event.kind), event.a, event.b, c.point, c.normal, c.feature_a, c.feature_b};
+  // In the scene of a file nothing is removed, so ids are places.
+  return {c.time,
+          to_event_kind(event.kind),
+          kds::collision::body_slot(event.a),
+          kds::collision::body_slot(event.b),
+          c.point,
+          c.normal,
+          c.feature_a,
+          c.feature_b};
 }
 
 void append_record(std::string& bytes, const Event& event, std::size_t other_owner) {

@@ -20,8 +20,8 @@ namespace kds {
 /// more, and then changes nothing.
 ///
 /// Each slot that has an event has a record, which is used again when the event is over. So a slot without event takes
-/// four bytes, and slots may be numbered sparsely; a record takes 52 to 68, and 8 more with ranks. set() allocates
-/// where more slots have events than ever before, resize() for its slots, and nothing else does.
+/// four bytes, and slots may be numbered sparsely; a record takes 52 to 68, and its rank, if it is not the slot. set()
+/// allocates where more slots have events than ever before, resize() for its slots, and nothing else does.
 ///
 /// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
 /// years to come. A day is an unsorted, doubly linked list of its records, so that set and clear touch a constant
@@ -154,7 +154,7 @@ class CalendarQueue {
   mutable std::size_t bill_ = 0;        // cost of long days, in events; beyond the number of events a new year is begun
   LargeVector<std::uint32_t> records_;  // by slot
   LargeVector<Slot> slots_;             // by record
-  LargeVector<std::uint64_t> ranks_;    // by record, as they were when it was set; empty for SlotRank
+  LargeVector<RankOf<Rank>> ranks_;     // by record, as they were when it was set; empty for SlotRank
   std::uint32_t free_ = none;           // first of the records of no slot, linked by `next`
   std::size_t size_ = 0;
   std::uint64_t operations_ = 0;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace kds {
 
@@ -29,11 +30,14 @@ struct SlotRank {
   constexpr std::uint64_t operator()(Slot slot) const noexcept { return slot; }
 };
 
-/// The order among events of one time.
+/// The order among events of one time: a function that gives each slot a rank, which is a number or another value that
+/// has an order and may be copied like one.
 template <class R>
-concept QueueRank = std::copyable<R> && requires(const R& rank, Slot slot) {
-  { rank(slot) } -> std::convertible_to<std::uint64_t>;
-};
+concept QueueRank = std::copyable<R> && std::totally_ordered<std::invoke_result_t<const R&, Slot>> &&
+    std::is_trivially_copyable_v<std::invoke_result_t<const R&, Slot>>;
+
+template <QueueRank R>
+using RankOf = std::invoke_result_t<const R&, Slot>;
 
 /// A map from slots to times with access to its least entry.
 ///
@@ -71,12 +75,12 @@ namespace detail {
 template <class Rank>
 struct QueueKey {
   double time;
-  std::uint64_t rank;
+  RankOf<Rank> rank;
   Slot slot;
 
   static QueueKey make(double time, Slot slot, const Rank& rank) { return {time, rank(slot), slot}; }
   /// The key of a slot without event, whose rank need not be known yet.
-  static QueueKey without_event(Slot slot) { return {no_event, 0, slot}; }
+  static QueueKey without_event(Slot slot) { return {no_event, {}, slot}; }
 
   friend bool operator<(const QueueKey& a, const QueueKey& b) {
     if (a.time != b.time) return a.time < b.time;

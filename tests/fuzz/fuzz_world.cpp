@@ -26,7 +26,7 @@ constexpr std::size_t most_events = 300;
 /// Numbers for a callback, from the input's own seed and what has happened.
 Random numbers_for(const Event& e, std::uint64_t seed) {
   std::uint64_t mix = seed ^ std::bit_cast<std::uint64_t>(e.time());
-  mix = mix * 0x9e3779b97f4a7c15 ^ (body_rank(e.a) << 8 ^ std::rotl(body_rank(e.b), 40));
+  mix = mix * 0x9e3779b97f4a7c15 ^ (std::rotl(e.a, 40) ^ std::rotl(e.b, 8));
   return Random(mix * 0x9e3779b97f4a7c15 ^ static_cast<std::uint64_t>(e.kind));
 }
 

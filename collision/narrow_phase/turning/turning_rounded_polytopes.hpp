@@ -71,14 +71,14 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
   bool known_to_separate_nothing(int way) const {
     return way < first_corner_and_edge_ && Base::known_to_separate_nothing(way);
   }
-  /// Only edges that are parallel can.
+  /// Only ways of edges that are parallel can.
   template <class Vanishes>
   bool separates_nothing(int way, const Vanishes& vanishes) const {
     if (way < this->faces() || way >= first_corner_and_edge_) return false;
     return every_condition(way, this->all(way), vanishes);
   }
 
-  /// The same pair with a smaller radius; none where nothing of it would be left.
+  /// The same pair with a smaller radius; none where that would not be above zero.
   std::optional<TurningRoundedPolytopes> smaller(double margin) const {
     if (!(radius() > margin)) return std::nullopt;
     TurningRoundedPolytopes pair = *this;
@@ -331,9 +331,9 @@ double TurningRoundedPolytopes<Degree>::corners_gap(const Sides& sides, std::uin
   return gap;
 }
 
-/// Of a way the least of what its conditions exceed nothing by, as lengths: distances less r, with the sine of two
-/// edges, and products of the way between points with unit vectors or what of these is across a line, which turn no
-/// faster than both bodies together.
+/// For each way the least by which one of its conditions is above zero, as a length: a distance less r (between two
+/// edges times the sine of their angle), or the product of the vector between two points with a vector of length 1 at
+/// most (a unit vector, or its part across a line), which turns no faster than both bodies together.
 template <int Degree>
 double TurningRoundedPolytopes<Degree>::gaps(const Frame& frame, std::vector<double>& gap) const {
   Base::gaps(frame, gap);

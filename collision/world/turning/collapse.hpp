@@ -16,7 +16,7 @@ namespace kds::collision::detail {
 
 /// One contact of a collapse.
 struct Blow {
-  BodySlot a = 0, b = 0;   ///< a < b
+  BodySlot a = 0, b = 0;   ///< in their order
   Eigen::Vector3d point;   ///< in the world
   Eigen::Vector3d normal;  ///< unit, from a to b
   double time = 0;         ///< s

@@ -81,7 +81,7 @@ class Tumbling {
   using Body = detail::Tumbler<Motion>;
 
   Tumbling(Bodies<Motion>& bodies, const WorldOptions& options, WorldCounters& counters)
-      : bodies_(bodies), error_(options.orientation_error), counters_(counters) {}
+      : bodies_(bodies), error_(options.orientation_error), counters_(counters), ends_(BodyRank{&bodies.keys()}) {}
 
   /// Adds a body that will precess.
   void add(BodySlot slot, const PrincipalInertia& inertia);
@@ -205,7 +205,7 @@ class Tumbling {
   const double error_;
   WorldCounters& counters_;
   std::vector<std::optional<Body>> of_;  ///< by slot, up to the last that has had one
-  DaryQueue<> ends_;                     ///< slots are bodies; of those that are alone: until when
+  DaryQueue<BodyRank> ends_;             ///< slots are bodies; of those that are alone: until when
   std::size_t alone_ = 0;
   double unheard_until_ = -never;
 };

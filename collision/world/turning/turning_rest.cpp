@@ -38,7 +38,7 @@ typename TurningRest<Motion>::Pair& TurningRest<Motion>::pair(Key key) {
   if (is_new) {
     const auto list = [this](BodySlot slot, BodySlot other) {
       auto& others = member(slot).others;
-      others.insert(std::lower_bound(others.begin(), others.end(), other), other);
+      others.insert(std::lower_bound(others.begin(), others.end(), other, before()), other);
     };
     list(key.first, key.second), list(key.second, key.first);
   }
@@ -56,14 +56,14 @@ void TurningRest<Motion>::erase(Key key) {
   pairs_.erase(it);
   const auto unlist = [this](BodySlot slot, BodySlot other) {
     auto& others = of_[slot].others;
-    others.erase(std::lower_bound(others.begin(), others.end(), other));
+    others.erase(std::lower_bound(others.begin(), others.end(), other, before()));
   };
   unlist(key.first, key.second), unlist(key.second, key.first);
 }
 
 template <class Motion>
 void TurningRest<Motion>::erase_all(BodySlot slot) {
-  while (!of_[slot].others.empty()) erase(std::minmax(slot, of_[slot].others.back()));
+  while (!of_[slot].others.empty()) erase(bodies_.in_order(slot, of_[slot].others.back()));
 }
 
 /// Wakes all bodies of the group of one that rests.
@@ -122,7 +122,7 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
   if (carries(slot)) wake(slot);
   const std::vector<BodySlot> others = of_[slot].others;  // which leave it when they wake
   for (const BodySlot other : others) {
-    if (carries(other) && pairs_[std::minmax(slot, other)].rests) wake(other);
+    if (carries(other) && pairs_[bodies_.in_order(slot, other)].rests) wake(other);
   }
   erase_all(slot);
   of_[slot].since = never, of_[slot].looked = -never;
@@ -145,7 +145,8 @@ std::vector<BodySlot> TurningRest<Motion>::partners(BodySlot slot) const {
   std::vector<BodySlot> found;
   if (slot >= of_.size()) return found;
   for (const BodySlot other : of_[slot].others) {
-    if (holds(std::min(slot, other), std::max(slot, other))) found.push_back(other);
+    const auto [a, b] = bodies_.in_order(slot, other);
+    if (holds(a, b)) found.push_back(other);
   }
   return found;
 }
@@ -153,7 +154,7 @@ std::vector<BodySlot> TurningRest<Motion>::partners(BodySlot slot) const {
 template <class Motion>
 void TurningRest<Motion>::solve() {
   std::vector<BodySlot> woken = std::exchange(woken_, {});
-  std::sort(woken.begin(), woken.end());
+  std::sort(woken.begin(), woken.end(), before());
   for (const BodySlot slot : woken) {
     Motion motion = bodies_.motion(slot).restarted(clock_.now);
     if constexpr (Motion::degree >= 2) motion.path.coefficients[2] = bodies_.free_acceleration(slot);
@@ -349,7 +350,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     if (carries(slot)) continue;
     const std::vector<BodySlot> others = of_[slot].others;
     for (const BodySlot other : others) {  // which it has left meanwhile
-      const Key key = std::minmax(slot, other);
+      const Key key = bodies_.in_order(slot, other);
       if (!pairs_[key].rests) erase(key);
     }
     of_[slot].rests = true;

@@ -105,7 +105,7 @@ class TurningRest {
   static bool has_met(BodySlot) { return false; }
   static void note_meeting(BodySlot) {}
   bool holds(BodySlot a, BodySlot b, int = -1) const { return find(a, b) != none; }
-  /// Not `none` if a and b (a < b) rest on each other.
+  /// Not `none` if a and b, in their order, rest on each other.
   Slot find(BodySlot a, BodySlot b, int = -1) const;
   /// Whether a body rests, and so has not the motion that callers gave.
   bool carries(BodySlot slot) const { return slot < of_.size() && of_[slot].rests; }
@@ -191,12 +191,12 @@ class TurningRest {
   void become(const Image& image);
 
  private:
-  using Key = std::pair<BodySlot, BodySlot>;
+  using Key = std::pair<BodySlot, BodySlot>;  ///< in their order
   using Pair = detail::LyingPair;
 
   /// The state of a body.
   struct Member {
-    std::vector<BodySlot> others;  ///< with which there is a pair, in order
+    std::vector<BodySlot> others;  ///< with which there is a pair, in their order
     double since = never;          ///< s; since when it is calm
     double looked = -never;        ///< s; when its group was last found not to be at rest
     bool rests = false;
@@ -223,6 +223,9 @@ class TurningRest {
   Member& member(BodySlot slot) {
     if (of_.size() <= slot) of_.resize(slot + std::size_t{1});
     return of_[slot];
+  }
+  auto before() const {
+    return [this](BodySlot a, BodySlot b) { return bodies_.before(a, b); };
   }
   Pair& pair(Key key);
   void erase(Key key);

@@ -179,7 +179,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
     Load load{.mass = bodies_[slot].mass, .size = bodies_[slot].bounding_radius, .acceleration = 2 * half_weight(slot)};
     group.loads.push_back(load);
     for (const BodySlot other : of_[slot].others) {
-      const Key key = std::minmax(slot, other);
+      const Key key = bodies_.in_order(slot, other);
       if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
       if (resting && !pairs_[key].rests) continue;
       const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);

@@ -60,7 +60,8 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const auto& [a, b, pair] = pairs[i];
     const auto need = [i](bool right, const char* what) { image::require(right, "resting", i, what); };
-    need(a < b && b < since.size() && bodies.entered(a) && bodies.entered(b), "is not of two bodies in the world");
+    need(bodies.before(a, b) && std::max(a, b) < since.size() && bodies.entered(a) && bodies.entered(b),
+         "is not of two bodies in the world");
     need(i == 0 || std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(a, b), "is out of order");
     need(pair.normal.allFinite() && pair.point.allFinite(), "its contact is not finite");
     if (pair.rests) held[a] = held[b] = 1;
@@ -85,7 +86,7 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
   for (std::size_t i = 0; i < blows.size(); ++i) {
     const auto& [a, b, point, normal, time, least] = blows[i];
     const auto need = [i](bool right, const char* what) { image::require(right, "blows", i, what); };
-    need(a < b && bodies.entered(a) && bodies.entered(b), "is not of two bodies in the world");
+    need(bodies.before(a, b) && bodies.entered(a) && bodies.entered(b), "is not of two bodies in the world");
     need(point.allFinite() && std::abs(normal.norm() - 1) <= unit_rounding, "its contact is not one");
     need(least >= 0 && least < never, "its speed is not >= 0");
     need(image::is_past(time, now) && (i == 0 || blows[i - 1].time <= time), "is out of order");

@@ -295,8 +295,8 @@ TEST_CASE("A body that gets the slot of one whose filter has changed at that ins
   world.advance_to(1.1);
   REQUIRE(log.events.size() == 2);
   CHECK(log.events[1].kind == Kind::contact);
-  CHECK(log.events[1].a == second);
-  CHECK(log.events[1].b == still);
+  CHECK(log.events[1].a == still);
+  CHECK(log.events[1].b == second);
 }
 
 TEST_CASE("A ball whose mask leaves out the floor under it wakes and falls, and rests on if it does not") {

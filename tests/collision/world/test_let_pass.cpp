@@ -170,7 +170,7 @@ TEST_CASE("What is told of an instant names each body by an id of its own", "[wo
     world.add_body(ball<1>(1, zero));
     world.add_body(ball<1>(0.1, {10, 0, 0}, {-5, 0, 0}));
     world.advance_to(10);
-    CHECK(world.add_body(body<1>(Sphere{0.1}, motion<1>({700, 0, 0}, zero, zero, 10))) == 2);
+    CHECK(world.add_body(body<1>(Sphere{0.1}, motion<1>({700, 0, 0}, zero, zero, 10))) == body_id(1, 2));
   });
   REQUIRE(kinds(events) == std::vector{Kind::contact, Kind::separation});
   CHECK(events[1].b == 1);

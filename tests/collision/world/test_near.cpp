@@ -19,9 +19,6 @@ using Ids = std::vector<BodyId>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// In order of slots.
-bool by_rank(BodyId a, BodyId b) { return body_rank(a) < body_rank(b); }
-
 template <int Degree>
 Ids near(const World<Degree>& world, const Vector3d& min, const Vector3d& max) {
   Ids named;
@@ -52,7 +49,7 @@ template <int Degree>
 void require_right(const World<Degree>& world, const Ids& added, const Vector3d& min, const Vector3d& max,
                    std::size_t& met) {
   const Ids named = near(world, min, max);
-  REQUIRE(std::is_sorted(named.begin(), named.end(), by_rank));
+  REQUIRE(std::is_sorted(named.begin(), named.end()));
   REQUIRE(std::adjacent_find(named.begin(), named.end()) == named.end());
   constexpr double rounding = 1e-12;
   for (const BodyId id : added) {
@@ -61,7 +58,7 @@ void require_right(const World<Degree>& world, const Ids& added, const Vector3d&
     const double radius = world.shape(id).bounding_radius;
     const double gap =
         (min.array() - (at.array() + radius)).max(at.array() - radius - max.array()).maxCoeff();  // on some axis
-    const bool is_named = std::binary_search(named.begin(), named.end(), id, by_rank);
+    const bool is_named = std::binary_search(named.begin(), named.end(), id);
     INFO("body " << id << " at " << world.now() << ", gap " << gap);
     if (gap <= -rounding) REQUIRE(is_named);
     if (gap > rounding) REQUIRE(!is_named);

@@ -13,7 +13,6 @@
 namespace kds::fuzz {
 
 using collision::body_generation;
-using collision::body_rank;
 using collision::body_slot;
 using collision::BodyId;
 using collision::Contact;

@@ -68,7 +68,7 @@ void Player<Degree>::note_state() {
   constexpr std::size_t most_compared = 40;  // each with all others
   std::vector<BodyId> there;
   std::copy_if(ids_.begin(), ids_.end(), std::back_inserter(there), [](BodyId id) { return id != gone; });
-  std::sort(there.begin(), there.end(), [](BodyId a, BodyId b) { return body_rank(a) < body_rank(b); });
+  std::sort(there.begin(), there.end());
   for (std::size_t i = 0; i < there.size(); ++i) {
     const BodyId a = there[i];
     const Motion& motion = world_->motion(a);
