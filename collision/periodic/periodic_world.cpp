@@ -77,9 +77,7 @@ template <int Degree>
 const typename PeriodicWorld<Degree>::Real& PeriodicWorld<Degree>::real(BodyId id) const {
   if (!contains(id)) [[unlikely]] {
     const BodySlot slot = body_slot(id);
-    // A place all of whose ids have been given and removed has the generation 0 again, and no body.
-    const bool removed = slot < reals_.size() && (body_generation(id) < reals_[slot].generation ||
-                                                  (reals_[slot].generation == 0 && !reals_[slot].alive));
+    const bool removed = slot < reals_.size() && body_generation(id) <= keys_.generation(slot);
     throw std::out_of_range("PeriodicWorld: there is no body " + std::to_string(id) + " (generation " +
                             std::to_string(body_generation(id)) + " of slot " + std::to_string(slot) + "): it " +
                             (removed ? "was removed" : "has never been there"));
