@@ -132,13 +132,13 @@ class TriangleGap : private TrianglesSeen<Degree> {
     const double most = norm(acceleration) + change + slower * rates * radius +
                         rounding * (bend + rate * (2 * speed + rate * far)) +
                         rate * (2 * view_.rate_error + rate * view_.way_error);
-    const double rate_rounding =
+    const double error_of_rate =
         rounding * (speed + rate * far + rates * radius) + view_.rate_error + rate * view_.way_error;
-    const double value_rounding = rounding * (far + hull_a_.radius + radius) + view_.way_error;
+    const double error_of_value = rounding * (far + hull_a_.radius + radius) + view_.way_error;
 
     const Eigen::Vector3d n = direction().value;
-    const double nearest = Seen::most(dots(n, a_)) + value_rounding;
-    const double along = dot(n, way.rate - centre) - rate_rounding;
+    const double nearest = Seen::most(dots(n, a_)) + error_of_value;
+    const double along = dot(n, way.rate - centre) - error_of_rate;
     const FourDoubles places = dots(n, b_), rates_of_b = dots(cross(n, apart), b_);
     double wait = until;
     for (std::size_t i = 0; i < 3; ++i) {
