@@ -57,6 +57,18 @@ void add_stack(Turning& world, const Vector3d& velocity = Vector3d::Zero()) {
   }
 }
 
+/// 32 steps; if it `saves`, each ends with an audit and goes on in another world, from a snapshot.
+void take_steps(std::unique_ptr<Turning>& world, Log& log, BroadPhaseKind kind, double step, bool saves) {
+  for (int k = 1; k <= 32; ++k) {
+    world->advance_to(k * step);
+    if (!saves) continue;
+    world->audit();
+    const auto image = save(*world);
+    world = std::make_unique<Turning>(options(kind), &log);
+    restore(image, *world);
+  }
+}
+
 }  // namespace
 
 TEST_CASE("a stack comes to rest on a belt and is carried, the same with all broad phases and snapshots", "[rest]") {
@@ -71,14 +83,7 @@ TEST_CASE("a stack comes to rest on a belt and is carried, the same with all bro
       auto world = std::make_unique<Turning>(options(kind), &log);
       world->add_body(moving(ground(), belt));
       add_stack(*world);
-      for (int k = 1; k <= 32; ++k) {
-        world->advance_to(k / 8.0);
-        if (!saves) continue;
-        world->audit();
-        const auto image = save(*world);
-        world = std::make_unique<Turning>(options(kind), &log);
-        restore(image, *world);
-      }
+      take_steps(world, log, kind, 0.125, saves);
       for (BodyId i = 0; i < 3; ++i) CHECK(world->resting(i, i + 1));
       for (BodyId i = 1; i <= 3; ++i) CHECK(moves_at(*world, i, belt));
       CHECK(log.passed == 0);
@@ -156,14 +161,7 @@ TEST_CASE("a lift that speeds up and a cart that brakes carry what rests on them
         auto world = std::make_unique<Turning>(options(kind), &log);
         world->add_body(accelerated(moving(ground(), c.velocity), c.acceleration));
         add_stack(*world, c.velocity);
-        for (int k = 1; k <= 32; ++k) {
-          world->advance_to(k / 16.0);
-          if (!saves) continue;
-          world->audit();
-          const auto image = save(*world);
-          world = std::make_unique<Turning>(options(kind), &log);
-          restore(image, *world);
-        }
+        take_steps(world, log, kind, 0.0625, saves);
         for (BodyId i = 0; i < 3; ++i) CHECK(world->resting(i, i + 1));
         for (BodyId i = 1; i <= 3; ++i) CHECK(moves_as(*world, i, 0));
         CHECK(log.passed == 0);

@@ -5,7 +5,6 @@
 
 #include <Eigen/Core>
 
-#include <algorithm>
 #include <optional>
 
 namespace kds::collision::turning_rest {
