@@ -324,7 +324,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
     Motion motion = before;
     motion.coefficients[1] = near.velocities[i];
     if constexpr (Motion::degree >= 2) motion.coefficients[2] = near.halves[i];
-    if (!(motion == before)) listener_.take_up(id, motion);
+    if (!(motion == before)) listener_->take_up(id, motion);
   }
   if (!solved && slot == none) add_to_cluster(contact);  // Bodies that are squeezed do not bounce.
   if (!anew && solved) return;

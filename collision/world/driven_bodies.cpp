@@ -30,7 +30,7 @@ Vector3d RestingContacts<Motion>::drive(BodySlot id, const Vector3d& normal, dou
     Motion motion = bodies_.motion(island.bodies[i]).restarted(clock_.now);
     const bool changed = motion.coefficients[1] != velocities[i];
     motion.coefficients[1] = velocities[i];
-    if (changed) listener_.take_up(island.bodies[i], motion);
+    if (changed) listener_->take_up(island.bodies[i], motion);
     disturb(island.bodies[i]);
   }
   return velocities[of_[id].place];

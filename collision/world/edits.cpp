@@ -1,4 +1,5 @@
-// How bodies are added to the world and removed.
+#include "collision/world/edits.hpp"
+
 #include "collision/free_turning.hpp"
 #include "collision/in_parts.hpp"
 #include "collision/motions.hpp"
@@ -10,7 +11,6 @@
 #include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/checked_pieces.hpp"
-#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -104,22 +104,51 @@ Eigen::Matrix3d tensor_of(const BasicBodyDescription<Motion>& description) {
 }  // namespace
 
 template <class Motion>
-void Engine<Motion>::reserve(std::size_t bodies) {
-  require_editable("World::reserve");
-  if (bodies > no_body) {
-    throw std::length_error("World::reserve: " + std::to_string(bodies) + " bodies are more than there are slots");
-  }
-  bodies_.reserve(bodies);
-  walls_.reserve(bodies);
-  if (bodies <= reserved_) return;
-  reserved_ = static_cast<BodySlot>(bodies);
-  broad_phase_->reserve(reserved_);
-  pairs_.reserve(reserved_);
+Edits<Motion>::Edits(WorldParts<Motion>& parts, MotionUpdates<Motion>& motions, Membership<Motion>& membership,
+                     Guard& guard, CallersClock& callers)
+    : options_(parts.options),
+      clock_(parts.clock),
+      counters_(parts.counters),
+      bodies_(parts.bodies),
+      scripts_(parts.scripts),
+      timers_(parts.timers),
+      tumbling_(parts.tumbling),
+      volumes_(parts.volumes),
+      resting_(parts.resting),
+      pairs_(parts.pairs),
+      self_contacts_(parts.self_contacts),
+      parts_(parts),
+      motions_(motions),
+      membership_(membership),
+      guard_(guard),
+      callers_(callers) {}
+
+template <class Motion>
+void Edits<Motion>::begin(const char* function, BodySlot removed) {
+  guard_.require_changeable(function);
+  const BodySlot late = motions_.awaiting_report();
+  if (late != no_body && late != removed) guard_.change([&] { motions_.take_up_reported(); });
+  if (!guard_.stepping() && clock_.now > callers_.now) [[unlikely]]
+    guard_.change([&] { parts_.go_back(callers_.now); });
+}
+
+template <class Motion>
+void Edits<Motion>::count(bool of_bodies) {
+  const bool due_now = of_bodies || callers_.next_time == callers_.now;
+  callers_.forget_next_event(due_now && !guard_.stepping() ? callers_.now : -never);
+  if (!guard_.stepping()) return;
+  limit_.count(clock_.now, options_.zeno.interval, std::max<std::uint64_t>(options_.most_edits, 64 * bodies_.size()));
+}
+
+template <class Motion>
+void Edits<Motion>::reserve(std::size_t bodies) {
+  begin("World::reserve");
+  parts_.reserve(bodies);
 }
 
 /// A sensor with the motion of its owner.
 template <class Motion>
-BodyId Engine<Motion>::add_attached(const Description& description) {
+BodyId Edits<Motion>::add_attached(const Description& description) {
   const auto fail = [](const std::string& what) { throw std::invalid_argument(what); };
   const BodySlot owner = bodies_.slot_of(*description.attached_to);
   if (!description.sensor) fail("attached_to: only a sensor can be attached to a body");
@@ -141,8 +170,8 @@ BodyId Engine<Motion>::add_attached(const Description& description) {
 }
 
 template <class Motion>
-BodyId Engine<Motion>::add_body(const Description& description) {
-  require_editable("World::add_body");
+BodyId Edits<Motion>::add_body(const Description& description) {
+  begin("World::add_body");
   if (description.attached_to) return add_attached(description);
   validate(description);
   if (collision::bends(description.shape) && options_.response != Response::none && !description.sensor &&
@@ -170,7 +199,7 @@ BodyId Engine<Motion>::add_body(const Description& description) {
       }
     }
   }
-  count_edit();
+  count();
   const double ball = ball_radius(description.shape);
   std::shared_ptr<const PlacedShape> shape;
   if (ball > 0 && description.orientation.coeffs() == Eigen::Quaterniond::Identity().coeffs()) [[likely]] {
@@ -178,17 +207,17 @@ BodyId Engine<Motion>::add_body(const Description& description) {
   } else {
     shape = std::make_shared<const PlacedShape>(place(description.shape, description.orientation));
   }
-  return bodies_.id_of(change_or_fail([&] { return put(description, std::move(shape), principal); }));
+  return bodies_.id_of(guard_.change([&] { return put(description, std::move(shape), principal); }));
 }
 
 /// Null for a ball that is not rotated.
 template <class Motion>
-inline BodySlot Engine<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
-                                    [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
+inline BodySlot Edits<Motion>::put(const Description& description, std::shared_ptr<const PlacedShape> shape,
+                                   [[maybe_unused]] const std::optional<PrincipalInertia>& principal) {
   // Pieces that are over are skipped; the rest is a script.
   auto piece = description.motion.begin();
   while (std::next(piece) != description.motion.end() && path_of(*std::next(piece)).start <= clock_.now) ++piece;
-  if (has_mesh(description.shape)) make_room_for_meshes();
+  if (has_mesh(description.shape)) membership_.make_room_for_meshes();
   const BodySlot slot = bodies_.add(description, std::move(shape), *piece);
   if constexpr (turns<Motion>) {
     if (principal) {
@@ -206,142 +235,15 @@ inline BodySlot Engine<Motion>::put(const Description& description, std::shared_
   return slot;
 }
 
-/// As soon as there is a mesh all volumes include contact gaps: this enlarges the volumes of the bodies that are there.
 template <class Motion>
-void Engine<Motion>::make_room_for_meshes() {
-  if (!volumes_.make_room_for_meshes()) return;
-  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (bodies_[slot].entered) update_volume(slot, volumes_.box(slot));
-  }
-}
-
-/// Tells the broad phase of a volume that has changed although nothing has moved.
-template <class Motion>
-void Engine<Motion>::update_volume(BodySlot slot, const KineticBox<Motion::degree>& box) {
-  if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, box, clock_.now, pairs_);
-  pairs_.box_changed(slot);
-  volumes_.schedule(slot);
-}
-
-/// Tells the broad phase of all bodies that are about to enter; if they do so in several parts, before the first.
-template <class Motion>
-void Engine<Motion>::expect_new_bodies() {
-  constexpr std::size_t sample = 256;
-  expected_ = bodies_.slots();
-  const std::span<const BodySlot> waiting = bodies_.waiting();
-  const std::size_t step = std::max<std::size_t>(waiting.size() / sample, 1);
-  std::vector<Entry> entries;
-  std::vector<KineticBox<Motion::degree>> boxes;
-  boxes.reserve(waiting.size() / step + 1);
-  for (std::size_t i = 0; i < waiting.size(); i += step) {
-    const BodySlot slot = waiting[i];
-    if (slot == no_body || !bodies_.in_broad_phase(slot) || volumes_.from_caller(slot)) continue;
-    boxes.push_back(volumes_.renew(slot));
-    entries.push_back({slot, &boxes.back()});
-  }
-  broad_phase_->expect(bodies_.waits(), static_cast<BodySlot>(bodies_.slots()), entries, clock_.now);
-}
-
-template <class Motion>
-void Engine<Motion>::enter_new_bodies(std::size_t most) {
-  if (most < bodies_.waits() && expected_ < bodies_.slots()) expect_new_bodies();
-  enter(bodies_.take_waiting(most), Begin::entering);
-}
-
-template <class Motion>
-void Engine<Motion>::enter(std::span<const BodySlot> entering, Begin begin) {
-  // Events of the others that are due now come first, so that they are not attributed to the new bodies.
-  while (broad_phase_->advance(clock_.now, pairs_)) {
-  }
-  std::vector<BodySlot> unbounded;
-  std::vector<Entry> entries;
-  entries.reserve(entering.size());
-  for (const BodySlot slot : entering) {
-    Body& b = bodies_[slot];
-    if (!b.alive || b.entered) continue;
-    b.entered = true;
-    if (bodies_.unbounded(slot)) {
-      unbounded.push_back(slot);
-      continue;
-    }
-    entries.push_back({slot, nullptr});
-  }
-  const auto boxes = std::make_unique_for_overwrite<KineticBox<Motion::degree>[]>(entries.size());
-  // The functions of callers are called by the calling thread, and in order.
-  const std::size_t threads = volumes_.any_from_callers() ? 1 : threads_for(entries.size(), options_.threads);
-  in_parts(entries.size(), threads, [&](std::size_t, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      entries[i].box = new (&boxes[i]) KineticBox<Motion::degree>(volumes_.renew(entries[i].slot));  // not copied there
-    }
-  });
-  const std::span<const Entry> all(entries);
-  std::size_t colliding = entries.size();
-  if (bodies_.filters()) {
-    const auto rest = std::stable_partition(entries.begin(), entries.end(),
-                                            [&](const Entry& entry) { return bodies_.in_broad_phase(entry.slot); });
-    colliding = static_cast<std::size_t>(rest - entries.begin());
-  }
-  pairs_.set_begin(begin);
-  {
-    const Stopwatch watch(profile(), Work::update);
-    broad_phase_->insert(all.first(colliding), clock_.now, pairs_);
-  }
-  if (!unbounded_.empty()) {
-    for (const Entry& entry : entries) unbounded_.begin_pairs(entry.slot);
-  }
-  for (const BodySlot slot : unbounded) unbounded_.add(slot, begin);
-  pairs_.set_begin(Begin::moving);
-  walls_.schedule(entries);
-  for (const Entry& entry : entries) {
-    if (!self_contacts_.enter(entry.slot)) continue;
-    const BodyId id = bodies_.id_of(entry.slot);
-    reports_.add(Reports::Kind::overlap, id, id, self_contacts_.contact(entry.slot));
-  }
-  if (!volumes_.any_ends()) return;
-  for (const Entry& entry : entries) volumes_.schedule(entry.slot);
-}
-
-template <class Motion>
-void Engine<Motion>::take_up_bounce() {
-  if (bounced_ == no_body) return;
-  const BodySlot slot = std::exchange(bounced_, no_body);
-  set_motion(slot, Motion(bodies_.motion(slot)), false);
-}
-
-template <class Motion>
-void Engine<Motion>::remove_body(BodyId id) {
-  require_editable("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
+void Edits<Motion>::remove_body(BodyId id) {
+  begin("World::remove_body", bodies_.contains(id) ? body_slot(id) : no_body);
   const BodySlot slot = bodies_.slot_of(id);
-  count_edit();
-  change_or_fail([&] {
-    while (!bodies_.attachments().sensors(slot).empty()) take_out(bodies_.attachments().sensors(slot).front());
-    take_out(slot);
-  });
+  count();
+  guard_.change([&] { membership_.take_out_with_sensors(slot); });
 }
 
-template <class Motion>
-void Engine<Motion>::take_out(BodySlot slot) {
-  if (bounced_ == slot) bounced_ = no_body;
-  resting_.forget(slot);
-  if (self_contacts_.touching(slot)) {  // Reports the separation, or nothing if the overlap has not been reported yet.
-    const BodyId id = bodies_.id_of(slot);
-    if (!reports_.take_back(Reports::Kind::overlap, id, id)) {
-      reports_.add(Reports::Kind::separation, id, id, self_contacts_.contact(slot));
-    }
-  }
-  self_contacts_.remove(slot);
-  scripts_.clear(slot);
-  tumbling_.remove(slot);
-  walls_.remove(slot);
-  if (bodies_[slot].entered && bodies_.in_broad_phase(slot)) broad_phase_->remove(slot, clock_.now, pairs_);
-  unbounded_.remove(slot);
-  volumes_.remove(slot);
-  pairs_.remove(slot);
-  reports_.forget(bodies_.id_of(slot), bodies_[slot].user_data);
-  bodies_.remove(slot);
-}
-
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) template class Edits<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

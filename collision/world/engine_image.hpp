@@ -44,7 +44,7 @@ struct Engine<Motion>::Image {
   WorldCounters counters;
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
-  typename decltype(std::declval<Engine&>().parts())::Images parts;
+  typename decltype(std::declval<WorldParts<Motion>&>().list())::Images parts;
   std::vector<Reports::Report> pending;
 
   template <class Archive>

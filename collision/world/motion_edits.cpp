@@ -1,10 +1,9 @@
 // How the motions of bodies are changed.
 #include "collision/motion_range.hpp"
 #include "collision/motions.hpp"
-#include "collision/profile.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world/checked_pieces.hpp"
-#include "collision/world/engine.hpp"
+#include "collision/world/edits.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -20,8 +19,8 @@
 namespace kds::collision {
 
 template <class Motion>
-void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
-  require_editable("World::update_motion");
+void Edits<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
+  begin("World::update_motion");
   const BodySlot slot = bodies_.slot_of(id);
   require_own_motion(slot, "World::update_motion");
   constexpr const char* name = "World::update_motion: motion";
@@ -37,19 +36,19 @@ void Engine<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
                                 std::to_string(clock_.now));
   }
   require_turns_for(slot, pieces, name);
-  count_edit();
+  count();
   auto next = std::upper_bound(pieces.begin(), pieces.end(), clock_.now,
                                [](double t, const Motion& piece) { return t < path_of(piece).start; });
-  change_or_fail([&] {
+  guard_.change([&] {
     const Motion& now = *std::prev(next);
-    give(slot, tumbling_.has(slot) ? tumbling_.take_up(slot, now, clock_.now) : now);
+    motions_.give(slot, tumbling_.has(slot) ? tumbling_.take_up(slot, now, clock_.now) : now);
     scripts_.add(slot, {next, pieces.end()});
   });
 }
 
 template <class Motion>
-void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
-  require_editable("World::append_motion");
+void Edits<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
+  begin("World::append_motion");
   const BodySlot slot = bodies_.slot_of(id);
   require_own_motion(slot, "World::append_motion");
   constexpr const char* name = "World::append_motion: motion";
@@ -61,13 +60,13 @@ void Engine<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
                                 " is not after the clock and the last piece, " + std::to_string(last));
   }
   require_turns_for(slot, pieces, name);
-  count_edit();
-  change_or_fail([&] { scripts_.append(slot, pieces); });
+  count();
+  guard_.change([&] { scripts_.append(slot, pieces); });
 }
 
 /// Checks what is required of the motions of a body that keeps its orientation, and of one that precesses.
 template <class Motion>
-void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
+void Edits<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pieces, const char* name) const {
   if constexpr (turns<Motion>) {
     const bool keeps = bodies_[slot].shape && keeps_orientation(bodies_[slot].shape->shape);
     if (!tumbling_.has(slot) && !keeps) return;
@@ -80,26 +79,10 @@ void Engine<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pi
 }
 
 template <class Motion>
-void Engine<Motion>::give(BodySlot slot, const Motion& motion) {
-  scripts_.clear(slot);
-  ++counters_.motion_updates;
-  bodies_.accelerate_freely(slot, motion);
-  if (!bodies_[slot].entered) {
-    bodies_.move(slot, motion);
-    return wait_to_enter(slot);
-  }
-  const bool jumped = bodies_.is_jump(slot, motion, clock_.now);
-  if (jumped) resting_.drop_all(slot);
-  resting_.leave(slot);
-  set_motion(slot, motion, jumped);
-  resting_.disturb(slot);
-}
-
-template <class Motion>
-void Engine<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
-  require_editable("World::update_vertices");
+void Edits<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
+  begin("World::update_vertices");
   const BodySlot slot = bodies_.slot_of(id);
-  if (!bends(slot)) {
+  if (!bodies_.bends(slot)) {
     throw std::invalid_argument("World::update_vertices: body " + std::to_string(id) + " is a " +
                                 kind_name(bodies_.shape(slot).shape) + ", which does not bend");
   }
@@ -112,62 +95,25 @@ void Engine<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(std::string("World::update_vertices: ") + error.what());
   }
-  count_edit();
-  change_or_fail([&] {
+  count();
+  guard_.change([&] {
     ++counters_.motion_updates;
     bodies_.set_shape(slot, std::move(after));
     volumes_.shape_changed(slot);
-    if (bodies_[slot].entered) set_motion(slot, bodies_.motion(slot), false);
+    if (bodies_[slot].entered) motions_.set(slot, bodies_.motion(slot), false);
     self_contacts_.changed(slot);
   });
 }
 
 template <class Motion>
-void Engine<Motion>::set_motion(BodySlot slot, const Motion& motion, bool jumped) {
-  const Stopwatch watch(profile(), Work::update);
-  bodies_.move(slot, motion);
-  pairs_.prefetch_pairs(slot);  // in parallel with the work of the broad phase
-  if (jumped) pairs_.set_begin(Begin::jumping);
-  if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
-  pairs_.set_begin(Begin::moving);
-  pairs_.motion_changed(slot, jumped);
-  walls_.schedule(slot);
-  volumes_.schedule(slot);
-  if (!bodies_.attachments().empty()) move_attached(slot, jumped);
-}
-
-/// Sensors that are attached to a body follow it.
-template <class Motion>
-void Engine<Motion>::move_attached(BodySlot slot, bool jumped) {
-  const Motion motion = bodies_.motion(slot);
-  for (const BodySlot sensor : bodies_.attachments().sensors(slot)) {
-    if (bodies_[sensor].entered) {
-      set_motion(sensor, motion, jumped);
-    } else {
-      bodies_.move(sensor, motion);
-    }
-  }
-}
-
-/// A body that has not entered has begun its motion, and so have the sensors that are attached to it.
-template <class Motion>
-void Engine<Motion>::wait_to_enter(BodySlot slot) {
-  if (!bodies_.waits(slot)) bodies_.wait(slot);
-  for (const BodySlot sensor : bodies_.attachments().sensors(slot)) {
-    bodies_.move(sensor, bodies_.motion(slot));
-    if (!bodies_.waits(sensor)) bodies_.wait(sensor);
-  }
-}
-
-template <class Motion>
-void Engine<Motion>::require_own_motion(BodySlot slot, const char* function) const {
+void Edits<Motion>::require_own_motion(BodySlot slot, const char* function) const {
   const BodySlot owner = bodies_.attachments().owner(slot);
   if (owner == no_body) return;
   throw std::invalid_argument(std::string(function) + ": body " + std::to_string(bodies_.id_of(slot)) +
                               " is attached to body " + std::to_string(bodies_.id_of(owner)) + ", whose motion it has");
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Edits<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

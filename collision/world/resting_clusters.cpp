@@ -93,7 +93,7 @@ void RestingContacts<Motion>::dissolve(const Island& island) {
     leave(id);
     Motion motion = bodies_.motion(id).restarted(clock_.now);
     for (std::size_t k = 2; k <= Motion::degree; ++k) motion.coefficients[k] = bodies_.free_term(id, k, clock_.now);
-    if (!(motion == bodies_.motion(id))) listener_.take_up(id, motion);
+    if (!(motion == bodies_.motion(id))) listener_->take_up(id, motion);
   }
   for (const Slot slot : island.contacts) contacts_[slot].fresh = true;
 }
@@ -208,7 +208,7 @@ void RestingContacts<Motion>::move(BodySlot id, const Vector3d& velocity, const 
   motion.coefficients[1] = velocity;
   for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = Vector3d::Zero();
   if constexpr (Motion::degree >= 2) motion.coefficients[2] = half_acceleration;
-  if (!(motion == bodies_.motion(id))) listener_.take_up(id, motion);
+  if (!(motion == bodies_.motion(id))) listener_->take_up(id, motion);
 }
 
 /// Contacts that are not proven are tested like pairs that do not rest.
@@ -216,7 +216,7 @@ template <class Motion>
 void RestingContacts<Motion>::set_proven(Contact& contact, bool proven) {
   if (contact.b == no_body) return;
   const bool tested = !std::exchange(contact.proven, proven);
-  if (tested || !proven) listener_.changed(contact.a, contact.b);
+  if (tested || !proven) listener_->changed(contact.a, contact.b);
 }
 
 template <class Motion>

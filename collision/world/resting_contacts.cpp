@@ -89,14 +89,14 @@ void RestingContacts<Motion>::add(const Contact& contact) {
   contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
   member(contact.a).contacts.push_back(slot);
   if (contact.b != no_body) member(contact.b).contacts.push_back(slot);
-  listener_.tell_resting(true, contacts_[slot]);
+  listener_->tell_resting(true, contacts_[slot]);
 }
 
 template <class Motion>
 void RestingContacts<Motion>::drop(Slot slot) {
   Contact& contact = contacts_[slot];
   contact.alive = false;
-  listener_.tell_resting(false, contact);
+  listener_->tell_resting(false, contact);
   releases_.clear(slot);
   free_.push_back(slot);
   for (const BodySlot id : {contact.a, contact.b}) {
@@ -105,7 +105,7 @@ void RestingContacts<Motion>::drop(Slot slot) {
     list.erase(std::find(list.begin(), list.end(), slot));
     disturb(id);
   }
-  if (contact.b != no_body) listener_.changed(contact.a, contact.b);
+  if (contact.b != no_body) listener_->changed(contact.a, contact.b);
 }
 
 template <class Motion>

@@ -52,7 +52,7 @@ double velocity_terms(const certificates::PointMotion<Degree>& motion, double t)
   return sum;
 }
 
-/// The listener of resting contacts: their world.
+/// The listener of resting contacts.
 template <class Motion>
 class RestingListener {
  public:
@@ -92,15 +92,16 @@ class RestingContacts {
 
   using Listener = RestingListener<Motion>;
 
-  RestingContacts(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
+  RestingContacts(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
       : bodies_(bodies),
         clock_(clock),
         gaps_(bodies, options.walls, clock),
-        listener_(listener),
         releases_(detail::RestingRank{&contacts_, &bodies.keys()}),
         spans_(BodyRank{&bodies.keys()}) {}
   RestingContacts(const RestingContacts&) = delete;
   RestingContacts& operator=(const RestingContacts&) = delete;
+  /// It must be set before anything rests.
+  void set_listener(Listener& listener) { listener_ = &listener; }
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
@@ -288,7 +289,7 @@ class RestingContacts {
   const Bodies<Motion>& bodies_;
   const Clock& clock_;
   ContactGaps<Motion> gaps_;
-  Listener& listener_;
+  Listener* listener_ = nullptr;
   std::vector<Contact> contacts_;
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested

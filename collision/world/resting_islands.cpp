@@ -74,7 +74,7 @@ void RestingContacts<Motion>::solve_fixed(BodySlot id) {
       schedule_release(slot);
     }
   }
-  if (given_anew && !(motion == before)) listener_.take_up(id, motion);
+  if (given_anew && !(motion == before)) listener_->take_up(id, motion);
 }
 
 /// False if a contact had to be dropped: the caller then calls it again, with one contact fewer.
@@ -89,7 +89,7 @@ bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
   if (!constrain(island, 1, motions)) return false;
   const auto take_up_all = [&] {
     for (std::size_t i = 0; i < island.free; ++i) {
-      if (!(motions[i] == before[i])) listener_.take_up(island.bodies[i], motions[i]);
+      if (!(motions[i] == before[i])) listener_->take_up(island.bodies[i], motions[i]);
     }
   };
   if constexpr (Motion::degree >= 2) {
@@ -320,7 +320,7 @@ bool RestingContacts<Motion>::press(Motion& motion, Contact& contact) const {
 template <class Motion>
 void RestingContacts<Motion>::part(Slot slot) {
   const Contact contact = contacts_[slot];
-  if (contact.b != no_body) listener_.let_pass(contact.a, contact.b);
+  if (contact.b != no_body) listener_->let_pass(contact.a, contact.b);
   drop(slot);
 }
 
@@ -337,11 +337,11 @@ bool RestingContacts<Motion>::let_pass_worst(const Island& island, const std::ve
   }
   if (worst == none) return false;
   const Contact contact = contacts_[worst];
-  listener_.let_pass(contact.a, contact.b);
-  listener_.tell_passes(contact);
+  listener_->let_pass(contact.a, contact.b);
+  listener_->tell_passes(contact);
   drop(worst);
   // If it is fresh, the event that has made it is about to be reported.
-  if (!contact.fresh) listener_.tell_rebound_suppressed(contact.a, contact.b);
+  if (!contact.fresh) listener_->tell_rebound_suppressed(contact.a, contact.b);
   return true;
 }
 

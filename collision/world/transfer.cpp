@@ -1,6 +1,6 @@
-// How the bodies of one world are divided among several, each for a part of the scene, and come back into one.
+#include "collision/world/transfer.hpp"
+
 #include "collision/motions.hpp"
-#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <span>
@@ -9,38 +9,39 @@
 namespace kds::collision {
 
 template <class Motion>
-bool Engine<Motion>::is_divisible() const {
-  const bool told_of_work = options_.report_pairs || options_.report_pieces;
-  if (failure_ || told_of_work || options_.response == Response::callback) return false;
-  if (volumes_.any_from_callers() || volumes_.end_of_bent() > 0 || self_contacts_.next_time() < never) return false;
-  return resting_.remembers_nothing() && reports_.empty();
+bool Transfer<Motion>::is_divisible() const {
+  const bool told_of_work = parts_.options.report_pairs || parts_.options.report_pieces;
+  if (!guard_.whole() || told_of_work || parts_.options.response == Response::callback) return false;
+  if (parts_.volumes.any_from_callers() || parts_.volumes.end_of_bent() > 0 || parts_.self_contacts.next_time() < never)
+    return false;
+  return parts_.resting.remembers_nothing() && parts_.reports.empty();
 }
 
 template <class Motion>
-std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<const BodySlot> slots,
-                                              std::span<const BodySlot> known, const IgnoredPairs& ignored) {
-  require_editable("World::take_in");
-  count_edit();
-  return change_or_fail([&] {
+std::vector<BodySlot> Transfer<Motion>::take_in(const Transfer& from, std::span<const BodySlot> slots,
+                                                std::span<const BodySlot> known, const IgnoredPairs& ignored) {
+  edits_.begin("World::take_in");
+  edits_.count();
+  return guard_.change([&] {
     std::vector<BodySlot> taken, entering;
     taken.reserve(slots.size()), entering.reserve(slots.size());
     for (const BodySlot there : slots) {
-      const Body& body = from.bodies_[there];
-      if (body.shape && has_mesh(body.shape->shape)) make_room_for_meshes();
-      const BodySlot slot = bodies_.take_in(from.bodies_, there);
-      volumes_.add(slot, {});
-      scripts_.take_in(slot, from.scripts_, there);
-      tumbling_.take_in(slot, from.tumbling_, there);
-      if (from.resting_.has_met(there)) resting_.note_meeting(slot);
+      const auto& body = from.parts_.bodies[there];
+      if (body.shape && has_mesh(body.shape->shape)) membership_.make_room_for_meshes();
+      const BodySlot slot = parts_.bodies.take_in(from.parts_.bodies, there);
+      parts_.volumes.add(slot, {});
+      parts_.scripts.take_in(slot, from.parts_.scripts, there);
+      parts_.tumbling.take_in(slot, from.parts_.tumbling, there);
+      if (from.parts_.resting.has_met(there)) parts_.resting.note_meeting(slot);
       taken.push_back(slot);
       if (body.entered) {
         entering.push_back(slot);
       } else if (has_begun(slot)) {
-        bodies_.wait(slot);
+        parts_.bodies.wait(slot);
       }
     }
-    relate(from, slots, taken, known, ignored);
-    enter(entering, Begin::moving);
+    relate(from.parts_.bodies, slots, taken, known, ignored);
+    membership_.enter(entering, Pairs<Motion>::Begin::moving);
     return taken;
   });
 }
@@ -48,101 +49,108 @@ std::vector<BodySlot> Engine<Motion>::take_in(const Engine& from, std::span<cons
 /// Which of the bodies that are taken in are attached to each other, and which pairs of these, or of one of these and
 /// one that was here before, are ignored.
 template <class Motion>
-void Engine<Motion>::relate(const Engine& from, std::span<const BodySlot> slots, std::span<const BodySlot> taken,
-                            std::span<const BodySlot> known, const IgnoredPairs& ignored) {
-  const auto& attachments = from.bodies_.attachments();
+void Transfer<Motion>::relate(const Bodies<Motion>& from, std::span<const BodySlot> slots,
+                              std::span<const BodySlot> taken, std::span<const BodySlot> known,
+                              const IgnoredPairs& ignored) {
+  const auto& attachments = from.attachments();
   if (attachments.empty() && ignored.empty()) return;
-  const auto number = [this](BodySlot slot) { return bodies_.number(slot); };
+  const auto number = [this](BodySlot slot) { return parts_.bodies.number(slot); };
   const auto slot_among = [&](std::span<const BodySlot> here, BodySlot of) {
     const auto found = std::ranges::lower_bound(here, of, {}, number);
     return found != here.end() && number(*found) == of ? *found : no_body;
   };
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const BodySlot owner = attachments.owner(slots[i]);
-    if (owner != no_body) bodies_.attach(taken[i], slot_among(taken, from.bodies_.number(owner)));
+    if (owner != no_body) parts_.bodies.attach(taken[i], slot_among(taken, from.number(owner)));
     ignored.each_partner(number(taken[i]), [&](BodySlot partner) {
       for (const BodySlot other : {slot_among(taken, partner), slot_among(known, partner)}) {
-        if (other != no_body) bodies_.ignore(taken[i], other, true);
+        if (other != no_body) parts_.bodies.ignore(taken[i], other, true);
       }
     });
   }
 }
 
 template <class Motion>
-void Engine<Motion>::let_go(std::span<const BodySlot> slots) {
-  require_editable("World::let_go");
-  count_edit();
-  change_or_fail([&] {
-    for (const BodySlot slot : slots) take_out(slot);
-    reports_.become({});
+void Transfer<Motion>::let_go(std::span<const BodySlot> slots) {
+  edits_.begin("World::let_go");
+  edits_.count();
+  guard_.change([&] {
+    for (const BodySlot slot : slots) membership_.take_out(slot);
+    parts_.reports.become({});
   });
 }
 
 template <class Motion>
-void Engine<Motion>::go_on_overlapping(std::span<const Overlap> overlaps) {
-  for (const Overlap& overlap : overlaps) pairs_.go_on_overlapping(overlap.a, overlap.b, overlap.passes_at);
+void Transfer<Motion>::go_on_overlapping(std::span<const Overlap> overlaps) {
+  for (const Overlap& overlap : overlaps) parts_.pairs.go_on_overlapping(overlap.a, overlap.b, overlap.passes_at);
 }
 
 template <class Motion>
-std::vector<typename Engine<Motion>::Overlap> Engine<Motion>::overlaps() const {
+std::vector<typename Transfer<Motion>::Overlap> Transfer<Motion>::overlaps() const {
   std::vector<Overlap> all;
-  pairs_.every_overlap([&](BodySlot a, BodySlot b, double passes_at) { all.push_back({a, b, passes_at}); });
+  parts_.pairs.every_overlap([&](BodySlot a, BodySlot b, double passes_at) { all.push_back({a, b, passes_at}); });
   return all;
 }
 
 template <class Motion>
-void Engine<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) {
-  bodies_.move(slot, progress.motion);
-  bodies_[slot].meetings = progress.meetings, bodies_[slot].burst_start = progress.burst_start;
-  tumbling_.go_on_from(slot, progress.turning);
+BodyProgress<Motion> Transfer<Motion>::progress(BodySlot slot) const {
+  const auto& body = parts_.bodies[slot];
+  return {parts_.bodies.motion(slot), body.meetings, body.burst_start, parts_.tumbling.progress(slot)};
 }
 
 template <class Motion>
-std::vector<Timers::Image::One> Engine<Motion>::note_passed(double t) {
-  for (const BodySlot slot : bodies_.take_waiting(bodies_.waits())) bodies_[slot].entered = true;
-  while (scripts_.next_time() <= t) {
-    for (const auto& [slot, motion] : scripts_.take_next()) {
-      bodies_.accelerate_freely(slot, motion);
-      bodies_[slot].entered = true;
-      for (const BodySlot sensor : bodies_.attachments().sensors(slot)) bodies_[sensor].entered = true;
+void Transfer<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) {
+  parts_.bodies.move(slot, progress.motion);
+  parts_.bodies[slot].meetings = progress.meetings, parts_.bodies[slot].burst_start = progress.burst_start;
+  parts_.tumbling.go_on_from(slot, progress.turning);
+}
+
+template <class Motion>
+std::vector<Timers::Image::One> Transfer<Motion>::note_passed(double t) {
+  for (const BodySlot slot : parts_.bodies.take_waiting(parts_.bodies.waits())) parts_.bodies[slot].entered = true;
+  while (parts_.scripts.next_time() <= t) {
+    for (const auto& [slot, motion] : parts_.scripts.take_next()) {
+      parts_.bodies.accelerate_freely(slot, motion);
+      parts_.bodies[slot].entered = true;
+      for (const BodySlot sensor : parts_.bodies.attachments().sensors(slot)) parts_.bodies[sensor].entered = true;
     }
   }
   std::vector<Timers::Image::One> rung;
-  while (timers_.next_time() <= t) {
-    const double time = timers_.next_time();
-    rung.push_back({time, timers_.take_next()});
+  while (parts_.timers.next_time() <= t) {
+    const double time = parts_.timers.next_time();
+    rung.push_back({time, parts_.timers.take_next()});
   }
   return rung;
 }
 
 template <class Motion>
-void Engine<Motion>::set_aside() {
-  change_or_fail([&] {
-    pairs_.clear();
-    walls_.forget_all();
-    counters_.broad_phase = counters_.broad_phase + broad_phase_->counters();
-    make_broad_phase();
+void Transfer<Motion>::set_aside() {
+  guard_.change([&] {
+    parts_.pairs.clear();
+    parts_.walls.forget_all();
+    parts_.counters.broad_phase = parts_.all_counters().broad_phase;
+    parts_.make_broad_phase();
   });
 }
 
 template <class Motion>
-void Engine<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
-  change_or_fail([&] {
-    clock_ = {t, t + options_.window};
-    callers_now_ = t;
-    count_edit();
-    bodies_.take_waiting(bodies_.waits());
-    for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-      if (bodies_.alive(slot) && !bodies_[slot].entered && has_begun(slot)) bodies_.wait(slot);
+void Transfer<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
+  guard_.change([&] {
+    parts_.clock = {t, t + parts_.options.window};
+    callers_.now = t;
+    edits_.count();
+    parts_.bodies.take_waiting(parts_.bodies.waits());
+    for (BodySlot slot = 0; slot < parts_.bodies.slots(); ++slot) {
+      if (parts_.bodies.alive(slot) && !parts_.bodies[slot].entered && has_begun(slot)) parts_.bodies.wait(slot);
     }
-    tumbling_.go_on();
-    walls_.become();
-    rebuild_broad_phase();
+    parts_.tumbling.go_on();
+    parts_.walls.become();
+    parts_.rebuild_broad_phase();
     go_on_overlapping(overlaps);
   });
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) template class Transfer<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

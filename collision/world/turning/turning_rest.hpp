@@ -90,14 +90,15 @@ class TurningRest {
 
   using Listener = RestingListener<Motion>;
 
-  TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
+  TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
       : bodies_(bodies),
         flight_(options.shortest_flight),
         clock_(clock),
-        listener_(listener),
         blows_(options.zeno.interval) {}
   TurningRest(const TurningRest&) = delete;
   TurningRest& operator=(const TurningRest&) = delete;
+  /// It must be set before anything rests.
+  void set_listener(Listener& listener) { listener_ = &listener; }
 
   bool empty() const { return resting_ == 0; }
   /// Whether nothing is remembered that decides what comes to rest later.
@@ -255,7 +256,7 @@ class TurningRest {
   const Bodies<Motion>& bodies_;
   const double flight_;
   const Clock& clock_;
-  Listener& listener_;
+  Listener* listener_ = nullptr;
   std::map<Key, Pair> pairs_;
   std::vector<Member> of_;  ///< by body, up to the last that has been calm
   std::vector<BodySlot> woken_;

@@ -26,8 +26,10 @@ struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listene
       : options(chosen),
         clock{options.start_time, options.start_time + options.window},
         volumes(bodies, options, clock),
-        resting(bodies, options, clock, *this),
-        pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {}
+        resting(bodies, options, clock),
+        pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {
+    resting.set_listener(*this);
+  }
 
   /// Adds a body that has entered.
   BodySlot add(const BodyDescription<Degree>& description) {
