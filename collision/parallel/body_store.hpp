@@ -4,7 +4,7 @@
 #include "collision/parallel/slots_by_number.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 
 #include <memory>
 #include <span>

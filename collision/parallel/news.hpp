@@ -4,7 +4,7 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/motion_changes.hpp"
 #include "collision/world/engine.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include "collision/world/engine.hpp"
 #include "collision/world/engine_image.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/saved_bodies.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 
 #include <algorithm>
 #include <array>

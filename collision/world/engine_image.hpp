@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/world/bodies_image.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 #include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"

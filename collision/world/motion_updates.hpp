@@ -3,7 +3,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/broad_phase/kinetic_box.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/world_parts.hpp"
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // The parts of a world that are about bodies that turn, each by itself.
 #include "collision/world/bodies_image.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 #include "collision/world/turning/turning_rest.hpp"
 #include "kds/audit.hpp"

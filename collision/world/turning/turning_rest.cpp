@@ -3,7 +3,7 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
 #include "collision/world/turning/rest_rules.hpp"
 #include "kds/audit.hpp"
@@ -51,7 +51,7 @@ void TurningRest<Motion>::erase(Key key) {
   if (it->second.rests) {
     --resting_;
     listener_->tell_resting(false,
-                           {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
+                            {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
   }
   pairs_.erase(it);
   const auto unlist = [this](BodySlot slot, BodySlot other) {

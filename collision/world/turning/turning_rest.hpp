@@ -8,7 +8,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/resting_contact.hpp"
+#include "collision/world/resting/resting_contact.hpp"
 #include "collision/world/turning/carrier.hpp"
 #include "collision/world/turning/collapse.hpp"
 #include "collision/world/world_part.hpp"
@@ -91,10 +91,7 @@ class TurningRest {
   using Listener = RestingListener<Motion>;
 
   TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
-      : bodies_(bodies),
-        flight_(options.shortest_flight),
-        clock_(clock),
-        blows_(options.zeno.interval) {}
+      : bodies_(bodies), flight_(options.shortest_flight), clock_(clock), blows_(options.zeno.interval) {}
   TurningRest(const TurningRest&) = delete;
   TurningRest& operator=(const TurningRest&) = delete;
   /// It must be set before anything rests.

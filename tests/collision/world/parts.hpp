@@ -3,9 +3,9 @@
 
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "collision/world/reports.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"

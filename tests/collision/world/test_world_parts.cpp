@@ -1,7 +1,7 @@
 // The classes of which a world is made, without the engine that runs it: edits and queries, and that all parts agree.
 #include "collision/world/world_parts.hpp"
 
-#include "collision/world/edits.hpp"
+#include "collision/world/edits/edits.hpp"
 #include "collision/world/membership.hpp"
 #include "collision/world/motion_updates.hpp"
 #include "collision/world/queries.hpp"

@@ -1,5 +1,5 @@
 // What was edited at one instant, and the same looked up in plain lists.
-#include "collision/world/instant_edits.hpp"
+#include "collision/world/pairs/instant_edits.hpp"
 
 #include "tests/support/random_numbers.hpp"
 

@@ -1,5 +1,5 @@
 // Lists in one memory against vectors.
-#include "collision/world/list_arena.hpp"
+#include "collision/world/pairs/list_arena.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <catch2/catch.hpp>

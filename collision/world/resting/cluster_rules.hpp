@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/response/least_constraint.hpp"
-#include "collision/world/resting_contact.hpp"
+#include "collision/world/resting/resting_contact.hpp"
 
 #include <algorithm>
 #include <cstddef>

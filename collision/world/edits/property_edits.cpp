@@ -1,7 +1,7 @@
 // How the properties of bodies are changed, and timers are set.
 #include "collision/motions.hpp"
 #include "collision/shapes/shape.hpp"
-#include "collision/world/edits.hpp"
+#include "collision/world/edits/edits.hpp"
 
 #include <cmath>
 #include <stdexcept>

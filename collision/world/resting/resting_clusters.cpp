@@ -1,6 +1,6 @@
 // Clusters: bodies in sustained contact on curved surfaces, advanced together, span by span.
 #include "collision/motions.hpp"
-#include "collision/world/cluster_span.hpp"
+#include "collision/world/resting/cluster_span.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "kds/roots/failure_time.hpp"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // Bodies that several worlds have, each for a part of the scene.
 #pragma once
 
-#include "collision/world/body_progress.hpp"
 #include "collision/world/callers_clock.hpp"
-#include "collision/world/edits.hpp"
+#include "collision/world/edits/edits.hpp"
 #include "collision/world/guard.hpp"
 #include "collision/world/membership.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/body_progress.hpp"
+#include "collision/world/transfer/parcel.hpp"
 #include "collision/world/world_parts.hpp"
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "collision/world/transfer.hpp"
+#include "collision/world/transfer/transfer.hpp"
 
 #include "collision/motions.hpp"
 

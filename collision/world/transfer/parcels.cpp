@@ -1,7 +1,7 @@
 // How the bodies of a world are divided among several processes, which store a part each, and put back into one world.
 #include "collision/motions.hpp"
-#include "collision/world/parcel.hpp"
-#include "collision/world/transfer.hpp"
+#include "collision/world/transfer/parcel.hpp"
+#include "collision/world/transfer/transfer.hpp"
 
 #include <memory>
 #include <span>

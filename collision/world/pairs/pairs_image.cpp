@@ -2,7 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world/callers_clock.hpp"
-#include "collision/world/edit_limit.hpp"
+#include "collision/world/edits/edit_limit.hpp"
 #include "collision/world/guard.hpp"
 #include "collision/world/membership.hpp"
 #include "collision/world/motion_updates.hpp"

@@ -1,8 +1,8 @@
 // Impacts on clusters: a body that is struck passes the impact on, at once, to all bodies that lean on it.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/cluster_rules.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/cluster_rules.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 
 #include <algorithm>
 #include <deque>

@@ -1,7 +1,7 @@
 // Bodies that a surface drives, and those that lean on them.
 #include "collision/motions.hpp"
 #include "collision/response/least_constraint.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // Bodies that lean on each other: found, and moved as their resting contacts let them.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "kds/certificate.hpp"
 #include "kds/roots/failure_time.hpp"
 

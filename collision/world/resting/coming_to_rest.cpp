@@ -1,8 +1,8 @@
 // When slow bodies come to rest.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/cluster_rules.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/cluster_rules.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 
 #include <algorithm>
 #include <cmath>

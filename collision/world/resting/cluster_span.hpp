@@ -2,8 +2,8 @@
 #pragma once
 
 #include "collision/vectors.hpp"
-#include "collision/world/cluster_rules.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/cluster_rules.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 
 #include <Eigen/Core>
 

@@ -5,7 +5,7 @@
 #include "collision/narrow_phase/surface_gap.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
-#include "collision/world/resting_contact.hpp"
+#include "collision/world/resting/resting_contact.hpp"
 #include "collision/world_options.hpp"
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
 #include "kds/audit.hpp"

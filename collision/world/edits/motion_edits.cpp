@@ -2,8 +2,8 @@
 #include "collision/motion_range.hpp"
 #include "collision/motions.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/world/checked_pieces.hpp"
-#include "collision/world/edits.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
+#include "collision/world/edits/edits.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 
 #include "collision/motions.hpp"
 #include "collision/world/queue_room.hpp"

@@ -1,4 +1,4 @@
-#include "collision/world/edits.hpp"
+#include "collision/world/edits/edits.hpp"
 
 #include "collision/free_turning.hpp"
 #include "collision/in_parts.hpp"
@@ -10,7 +10,7 @@
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 
 #include <algorithm>
 #include <cmath>

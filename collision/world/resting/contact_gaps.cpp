@@ -1,9 +1,9 @@
-#include "collision/world/contact_gaps.hpp"
+#include "collision/world/resting/contact_gaps.hpp"
 
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/cluster_rules.hpp"
+#include "collision/world/resting/cluster_rules.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
