@@ -1,4 +1,4 @@
-// The public functions of a world: each is a call of its engine.
+// The public functions of a world: each is a call of what its engine is made of.
 #include "collision/world.hpp"
 
 #include "collision/motions.hpp"
@@ -27,77 +27,77 @@ BasicWorld<Motion>::~BasicWorld() = default;
 
 template <class Motion>
 BodyId BasicWorld<Motion>::add_body(const Description& description) {
-  return engine_->add_body(description);
+  return engine_->edits().add_body(description);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::reserve(std::size_t bodies) {
-  engine_->reserve(bodies);
+  engine_->edits().reserve(bodies);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::remove_body(BodyId id) {
-  engine_->remove_body(id);
+  engine_->edits().remove_body(id);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::update_motion(BodyId id, const Motion& motion) {
-  engine_->update_motion(id, {&motion, 1});
+  engine_->edits().update_motion(id, {&motion, 1});
 }
 
 template <class Motion>
 void BasicWorld<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
-  engine_->update_motion(id, pieces);
+  engine_->edits().update_motion(id, pieces);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
-  engine_->append_motion(id, pieces);
+  engine_->edits().append_motion(id, pieces);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::update_vertices(BodyId id, std::vector<MeshScript::Keyframe> keyframes) {
-  engine_->update_vertices(id, std::move(keyframes));
+  engine_->edits().update_vertices(id, std::move(keyframes));
 }
 
 template <class Motion>
 void BasicWorld<Motion>::set_mass(BodyId id, double mass) {
-  engine_->set_mass(id, mass);
+  engine_->edits().set_mass(id, mass);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::set_restitution(BodyId id, double restitution) {
-  engine_->set_restitution(id, restitution);
+  engine_->edits().set_restitution(id, restitution);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::set_filter(BodyId id, std::uint32_t category, std::uint32_t collides_with) {
-  engine_->set_filter(id, category, collides_with);
+  engine_->edits().set_filter(id, category, collides_with);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::set_group(BodyId id, std::uint32_t group) {
-  engine_->set_group(id, group);
+  engine_->edits().set_group(id, group);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::ignore_pair(BodyId a, BodyId b, bool ignored) {
-  engine_->ignore_pair(a, b, ignored);
+  engine_->edits().ignore_pair(a, b, ignored);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::set_user_data(BodyId id, std::uint64_t user_data) {
-  engine_->set_user_data(id, user_data);
+  engine_->edits().set_user_data(id, user_data);
 }
 
 template <class Motion>
 TimerId BasicWorld<Motion>::set_timer(double t) {
-  return engine_->set_timer(t);
+  return engine_->edits().set_timer(t);
 }
 
 template <class Motion>
 bool BasicWorld<Motion>::cancel_timer(TimerId timer) {
-  return engine_->cancel_timer(timer);
+  return engine_->edits().cancel_timer(timer);
 }
 
 template <class Motion>
@@ -137,7 +137,7 @@ void BasicWorld<Motion>::audit(double t) const {
 
 template <class Motion>
 double BasicWorld<Motion>::now() const {
-  return engine_->now();
+  return engine_->queries().now();
 }
 
 template <class Motion>
@@ -158,7 +158,7 @@ const Motion& BasicWorld<Motion>::motion(BodyId id) const {
 
 template <class Motion>
 Motion BasicWorld<Motion>::free_motion(BodyId id) const {
-  return engine_->free_motion(id);
+  return engine_->queries().free_motion(id);
 }
 
 template <class Motion>
@@ -223,22 +223,22 @@ std::uint64_t BasicWorld<Motion>::user_data(BodyId id) const {
 
 template <class Motion>
 bool BasicWorld<Motion>::touching(BodyId a, BodyId b) const {
-  return engine_->touching(a, b);
+  return engine_->queries().touching(a, b);
 }
 
 template <class Motion>
 bool BasicWorld<Motion>::resting(BodyId a, BodyId b) const {
-  return engine_->resting(a, b);
+  return engine_->queries().resting(a, b);
 }
 
 template <class Motion>
 bool BasicWorld<Motion>::resting_at_wall(BodyId a, int wall) const {
-  return engine_->resting_at_wall(a, wall);
+  return engine_->queries().resting_at_wall(a, wall);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::visit_partners(BodyId id, BodyVisitor visit) const {
-  engine_->visit_partners(id, visit);
+  engine_->queries().visit_partners(id, visit);
 }
 
 template <class Motion>
@@ -255,28 +255,28 @@ void BasicWorld<Motion>::visit_bodies(BodyVisitor visit) const {
 
 template <class Motion>
 WorldCounters BasicWorld<Motion>::counters() const {
-  return engine_->counters();
+  return engine_->parts().all_counters();
 }
 
 template <class Motion>
 std::string_view BasicWorld<Motion>::broad_phase() const {
-  return engine_->broad_phase();
+  return engine_->parts().broad_phase->name();
 }
 
 template <class Motion>
 const Profile& BasicWorld<Motion>::work_profile() const {
-  return engine_->work_profile();
+  return engine_->parts().work_profile;
 }
 
 template <class Motion>
 void BasicWorld<Motion>::visit_overlapping(const Eigen::Vector3d& min, const Eigen::Vector3d& max,
                                            BodyVisitor visit) const {
-  engine_->visit_overlapping(min, max, visit);
+  engine_->queries().visit_overlapping(min, max, visit);
 }
 
 template <class Motion>
 void BasicWorld<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double until, BodyVisitor visit) const {
-  engine_->visit_swept(box, until, visit);
+  engine_->queries().visit_swept(box, until, visit);
 }
 
 template <class Motion>

@@ -4,7 +4,7 @@
 #include "collision/queries/near_pairs.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/world.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 #include "io/scene_world.hpp"
 #include "io/world_recorder.hpp"
 #include "python/any_world.hpp"

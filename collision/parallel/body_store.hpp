@@ -4,7 +4,7 @@
 #include "collision/parallel/slots_by_number.hpp"
 #include "collision/world.hpp"
 #include "collision/world/engine.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 
 #include <memory>
 #include <span>
@@ -64,7 +64,7 @@ class BodyStore {
   }
   /// The bodies that have been added to the part's world have these numbers, in the order of their slots.
   void number_from(BodySlot first) {
-    engine().number_from(first);
+    engine().transfer().number_from(first);
     for (BodySlot slot = 0; slot < bodies().slots(); ++slot) part_->slots.add(first + slot, slot);
   }
   /// Stores this part again, or the whole if it is null.
@@ -72,7 +72,7 @@ class BodyStore {
   /// Adds the bodies of a parcel, without attachments. Throws std::runtime_error for a body that is here already.
   /// Precondition: it stores a part.
   void store(const Parcel<Motion>& parcel) {
-    const std::vector<BodySlot> slots = engine().store(parcel, whole_);
+    const std::vector<BodySlot> slots = engine().transfer().store(parcel, whole_.bodies());
     for (std::size_t i = 0; i < slots.size(); ++i) {
       if (part_->slots.find(parcel.numbers[i]) != no_body) throw std::runtime_error("snapshot: a body is there twice");
       part_->slots.add(parcel.numbers[i], slots[i]);
@@ -93,12 +93,12 @@ class BodyStore {
   void forget(std::span<const BodySlot> numbers) {
     std::vector<BodySlot> slots;
     for (const BodySlot number : numbers) slots.push_back(find(number)), part_->slots.remove(number);
-    engine().forget(slots);
+    engine().transfer().forget(slots);
   }
-  /// As Engine::note_passed().
+  /// As Transfer::note_passed().
   std::vector<Timers::Image::One> note_passed(double t) {
-    if (part_) part_->engine().note_passed(t);  // which has no timers
-    return whole_.note_passed(t);
+    if (part_) part_->engine().transfer().note_passed(t);  // which has no timers
+    return whole_.transfer().note_passed(t);
   }
 
  private:
@@ -106,7 +106,7 @@ class BodyStore {
   void attach(BodySlot sensor, BodySlot owner) {
     const BodySlot sensors_slot = find(sensor), owners_slot = find(owner);
     if (sensors_slot == no_body || owners_slot == no_body) return;
-    if (bodies().attachments().owner(sensors_slot) == no_body) engine().attach(sensors_slot, owners_slot);
+    if (bodies().attachments().owner(sensors_slot) == no_body) engine().transfer().attach(sensors_slot, owners_slot);
   }
 
   const WorldOptions options_;

@@ -43,11 +43,11 @@ void Domains<Motion>::add_shares(std::size_t count,
     if (description.box) refuse("has a box function");
     if (description.attached_to) refuse("is attached to another");
     if (bends(description.shape)) refuse("is a mesh that bends");
-    store_.engine().add_body(description);
+    store_.engine().edits().add_body(description);
   }
   if (team_.count() == 1) return;
   store_.number_from(static_cast<BodySlot>(first));
-  store_.whole().lend(all);
+  store_.whole().transfer().lend(all);
   share_meshes();
 }
 
@@ -117,7 +117,7 @@ void Domains<Motion>::begin(Division division, std::span<const BodySlot> answere
     const Engine<Motion>& engine = store_.engine();
     std::vector<DomainIndex> knowers;
     for (const BodySlot slot : answered) {
-      const DomainIndex owner = assign_body(*division_, engine.bodies(), engine.scripts(), slot, now, knowers);
+      const DomainIndex owner = assign_body(*division_, engine.bodies(), engine.parts().scripts, slot, now, knowers);
       division_->note(slot, owner, knowers);
     }
     overlaps_ = std::move(overlaps);
@@ -129,7 +129,7 @@ void Domains<Motion>::begin(Division division, std::span<const BodySlot> answere
   division_->slots = store_.slots();
   send_bodies(from, answered, now);
   send_overlaps(from, answered, std::move(overlaps), now);
-  if (whole) store_.whole().lend();
+  if (whole) store_.whole().transfer().lend();
 }
 
 /// Each goes to the processes whose domains are to know it.
@@ -142,7 +142,7 @@ void Domains<Motion>::send_bodies(Engine<Motion>& from, std::span<const BodySlot
     const auto sent = answered.first(std::min(answered.size(), bodies_at_once));
     answered = answered.subspan(sent.size());
     for (const BodySlot slot : sent) {
-      const DomainIndex owner = assign_body(*division_, from.bodies(), from.scripts(), slot, now, knowers);
+      const DomainIndex owner = assign_body(*division_, from.bodies(), from.parts().scripts, slot, now, knowers);
       const auto add = [&](std::size_t process) {
         slots[process].push_back(slot);
         news[process].moves.add(from.bodies().number(slot), owner, knowers);
@@ -150,7 +150,7 @@ void Domains<Motion>::send_bodies(Engine<Motion>& from, std::span<const BodySlot
       each_process(knowers, add);
       if (std::ranges::any_of(knowers, [this](DomainIndex domain) { return is_here(domain); })) add(team_.rank());
     }
-    for (const auto& [process, of_process] : slots) news[process].newcomers = from.pack(of_process, meshes_);
+    for (const auto& [process, of_process] : slots) news[process].newcomers = from.transfer().pack(of_process, meshes_);
     const auto hear = [&](const WindowNews<Motion>& heard) {
       store_.add(heard.newcomers);
       heard.moves.each([&](BodySlot number, DomainIndex owner, std::span<const DomainIndex> known) {
@@ -187,7 +187,7 @@ void Domains<Motion>::send_overlaps(Engine<Motion>& from, std::span<const BodySl
       }
       continue;
     }
-    assign_body(*division_, from.bodies(), from.scripts(), slot, now, knowers);
+    assign_body(*division_, from.bodies(), from.parts().scripts, slot, now, knowers);
     each_process(knowers, [&](std::size_t process) { news[process].overlaps.push_back(overlap); });
   }
   overlaps_ = std::move(overlaps);
@@ -204,20 +204,20 @@ std::vector<typename Domains<Motion>::Overlap> Domains<Motion>::end() {
     const std::vector<BodySlot> all = answered();
     std::span<const BodySlot> left = all;
     const std::size_t at_once = std::max<std::size_t>(1, bodies_at_once / team_.count());
-    store_.whole().take_back();
+    store_.whole().transfer().take_back();
     for (std::uint64_t rounds = rounds_of(all.size(), at_once); rounds > 0; --rounds) {
       const auto sent = left.first(std::min(left.size(), at_once));
       left = left.subspan(sent.size());
       WindowNews<Motion> mine;
-      mine.newcomers = store_.engine().pack(sent, meshes_);
+      mine.newcomers = store_.engine().transfer().pack(sent, meshes_);
       if (rounds == 1) mine.overlaps = overlaps_;
-      store_.whole().put_back(mine.newcomers);
+      store_.whole().transfer().put_back(mine.newcomers);
       Letters letters;
       for (std::size_t process = 0; process < team_.count(); ++process) {
         if (process != team_.rank()) letters.to(process)(mine);
       }
       exchange_news(std::move(letters), [&](const WindowNews<Motion>& heard) {
-        store_.whole().put_back(heard.newcomers);
+        store_.whole().transfer().put_back(heard.newcomers);
         overlaps_.insert(overlaps_.end(), heard.overlaps.begin(), heard.overlaps.end());
       });
     }

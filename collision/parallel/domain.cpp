@@ -53,14 +53,15 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
       gone.push_back(slot);
       return true;
     });
-    engine_.let_go(gone);
+    engine_.transfer().let_go(gone);
   }
   if (come.empty()) return;
   const auto before = static_cast<std::ptrdiff_t>(slots_.size());
   std::vector<BodySlot> stored;
   stored.reserve(come.size());
   for (const BodySlot number : come) stored.push_back(store.find(number));
-  const std::vector<BodySlot> taken = engine_.take_in(store.engine(), stored, slots_, store.ignored());
+  const std::vector<BodySlot> taken =
+      engine_.transfer().take_in(store.engine().transfer(), stored, slots_, store.ignored());
   slots_.insert(slots_.end(), taken.begin(), taken.end());
   std::inplace_merge(slots_.begin(), slots_.begin() + before, slots_.end(),
                      [&](BodySlot a, BodySlot b) { return number(a) < number(b); });
@@ -70,7 +71,7 @@ void Domain<Motion>::exchange(std::span<const BodySlot> go, std::span<const Body
     if (comes(overlap.a) || comes(overlap.b))
       here.push_back({slot_of(overlap.a), slot_of(overlap.b), overlap.passes_at});
   }
-  engine_.go_on_overlapping(here);
+  engine_.transfer().go_on_overlapping(here);
 }
 
 template <class Motion>
@@ -97,7 +98,7 @@ void Domain<Motion>::begin_window() {
       continue;
     }
     ++report_.owned;
-    const bool steady = !detail::has_script(bodies, engine_.scripts(), slot);
+    const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot);
     if (steady && inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
       role_[slot] = Role::deep;
       continue;
@@ -199,14 +200,14 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
 template <class Motion>
 void Domain<Motion>::commit(BodyStore<Motion>& store) const {
   for (const BodySlot slot : changed_) {
-    store.engine().go_on_from(store.find(number(slot)), engine_.progress(slot));
+    store.engine().transfer().go_on_from(store.find(number(slot)), engine_.transfer().progress(slot));
   }
 }
 
 template <class Motion>
 void Domain<Motion>::commit_meetings(BodyStore<Motion>& store) const {
   for (const BodySlot slot : changed_) {
-    if (engine_.has_met(slot)) store.engine().note_meeting(store.find(number(slot)));
+    if (engine_.transfer().has_met(slot)) store.engine().transfer().note_meeting(store.find(number(slot)));
   }
 }
 
@@ -220,7 +221,7 @@ void Domain<Motion>::append_changed(std::vector<BodySlot>& numbers) const {
 template <class Motion>
 std::vector<typename Domain<Motion>::Overlap> Domain<Motion>::overlaps() const {
   std::vector<Overlap> all;
-  for (const Overlap& overlap : engine_.overlaps()) {
+  for (const Overlap& overlap : engine_.transfer().overlaps()) {
     const BodySlot a = number(overlap.a), b = number(overlap.b);
     const DomainIndex of_a = division_.owner_of(a);
     const DomainIndex teller = of_a != Division::nobody ? of_a : division_.owner_of(b);
@@ -271,7 +272,7 @@ void Domain<Motion>::note_change(BodySlot slot, double t) {
     body.since = t, body.motion = motion;
     if (division_.is_known_to_one(number(slot))) return;
   }
-  fresh_.push_back({number(slot), motion, t, engine_.progress(slot).turning});
+  fresh_.push_back({number(slot), motion, t, engine_.transfer().progress(slot).turning});
 }
 
 /// Whether this is the first of the domains that know two bodies. Precondition: it knows both.

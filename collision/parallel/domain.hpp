@@ -62,7 +62,7 @@ template <class Motion>
 class Domain final : private BasicWorldListener<Motion> {
  public:
   using World = BasicWorld<Motion>;
-  using Overlap = typename Engine<Motion>::Overlap;
+  using Overlap = typename Transfer<Motion>::Overlap;
   using Change = MotionChange<Motion>;
 
   /// `logs`: whether events are recorded. `first`: of the domains with one store, this tells it of bodies without an

@@ -258,7 +258,8 @@ void Domains<Motion>::add_moves(NewsByProcess& news) {
       note_move(number, owner, knowers);
     });
   }
-  for (const auto& [process, slots] : newcomers) news[process].newcomers = store_.engine().pack(slots, meshes_);
+  for (const auto& [process, slots] : newcomers)
+    news[process].newcomers = store_.engine().transfer().pack(slots, meshes_);
 }
 
 /// What has changed of bodies owned here, and which pairs overlap: to those that are to know of them.
@@ -288,7 +289,7 @@ template <class Motion>
 BodyNews<Motion> Domains<Motion>::news_of(BodySlot number) const {
   const Engine<Motion>& engine = store_.engine();
   const BodySlot slot = store_.find(number);
-  return {number, engine.progress(slot), engine.has_met(slot)};
+  return {number, engine.transfer().progress(slot), engine.transfer().has_met(slot)};
 }
 
 /// Notes who owns and knows a body from now on, and which domains of this process are to let it go and to take it in.
@@ -324,8 +325,8 @@ void Domains<Motion>::hear(const WindowNews<Motion>& news) {
   });
   for (const BodyNews<Motion>& body : news.bodies) {
     const BodySlot slot = store_.find(body.number);
-    store_.engine().go_on_from(slot, body.progress);
-    if (body.met) store_.engine().note_meeting(slot);
+    store_.engine().transfer().go_on_from(slot, body.progress);
+    if (body.met) store_.engine().transfer().note_meeting(slot);
   }
   overlaps_.insert(overlaps_.end(), news.overlaps.begin(), news.overlaps.end());
 }

@@ -35,7 +35,7 @@ namespace kds::collision {
 template <class Motion>
 class Domains {
  public:
-  using Overlap = typename Engine<Motion>::Overlap;
+  using Overlap = typename Transfer<Motion>::Overlap;
 
   /// `whole`: the world of the whole scene, which must outlive this.
   Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team);

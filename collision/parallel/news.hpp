@@ -4,7 +4,7 @@
 #include "collision/parallel/division.hpp"
 #include "collision/parallel/motion_changes.hpp"
 #include "collision/world/engine.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 
 #include <vector>
 
@@ -57,7 +57,7 @@ struct WindowNews {
   Parcel<Motion> newcomers{};  ///< that the other has not stored, and is to know
   BodyMoves moves{};
   std::vector<BodyNews<Motion>> bodies{};
-  std::vector<typename Engine<Motion>::Overlap> overlaps{};
+  std::vector<typename Transfer<Motion>::Overlap> overlaps{};
 
   template <class Archive>
   void archive(Archive& archive) {

@@ -199,7 +199,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       const kds::detail::RaisedFlag telling(telling_);
       world_.advance_to(now_);
     }
-    if (!team_.all(domains_.store().engine().is_divisible())) return false;
+    if (!team_.all(domains_.store().engine().transfer().is_divisible())) return false;
     const std::vector<BodySlot> answered = domains_.answered();
     auto division = find_division(answered);
     if (!division) return false;
@@ -207,8 +207,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       const double fastest = division->greatest_speed + std::sqrt(division->greatest_bend * division->halo);
       length_ = WindowLength(fastest > 0 ? division->room() / (4 * fastest) : parallel_.longest_window);
     }
-    auto overlaps = apart() ? domains_.take_overlaps() : store_.overlaps();
-    if (!apart()) store_.set_aside();
+    auto overlaps = apart() ? domains_.take_overlaps() : store_.transfer().overlaps();
+    if (!apart()) store_.transfer().set_aside();
     domains_.begin(std::move(*division), answered, std::move(overlaps), logs_, now_);
     begin_window();
     domains_.make(now_);
@@ -220,13 +220,13 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   /// `answered`: as Domains::answered().
   std::optional<Division> find_division(std::span<const BodySlot> answered) {
     const Engine<Motion>& engine = domains_.store().engine();
-    return collision::divide(engine.bodies(), engine.scripts(), answered, now_, parallel_, workers(), team_);
+    return collision::divide(engine.bodies(), engine.parts().scripts, answered, now_, parallel_, workers(), team_);
   }
 
   /// The scene is one world again, in every process.
   void gather(double now) {
     const auto overlaps = domains_.end();
-    store_.go_on(now, overlaps);
+    store_.transfer().go_on(now, overlaps);
   }
 
   /// A path may leave the chord between two of its places by so much; windows are so short that it is far less than the

@@ -4,7 +4,7 @@
 #include "collision/world/engine.hpp"
 #include "collision/world/engine_image.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/parcel.hpp"
+#include "collision/world/transfer/parcel.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace kds::collision {
 /// Some bodies, and pairs that overlap: of which one is among these, or of bodies that stand.
 template <class Motion>
 struct SavedBodies {
-  using Overlap = typename Engine<Motion>::Overlap;
+  using Overlap = typename Transfer<Motion>::Overlap;
 
   Parcel<Motion> parcel{};
   std::vector<Overlap> overlaps{};  ///< by numbers

@@ -2,7 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/saved_bodies.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 
 #include <algorithm>
 #include <array>
@@ -55,7 +55,7 @@ kds::Snapshot Domains<Motion>::save(double now, const WriteBodies& write, std::s
     auto size = std::min(left.size(), bodies_in_block);
     while (size < left.size() && bodies.attachments().owner(left[size]) != no_body) ++size;
     SavedBodies<Motion> saved;
-    saved.parcel = engine.pack(left.first(size), meshes);
+    saved.parcel = engine.transfer().pack(left.first(size), meshes);
     saved.overlaps = std::exchange(others, {});
     left = left.subspan(size);
     for (const BodySlot number : saved.parcel.numbers) {
@@ -132,7 +132,7 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
   meshes_ = rest.bodies.meshes;
   store_.whole().become(rest);
   for (const auto& [sensor, owner] : rest.bodies.attached) {
-    if (store_.find(sensor) != no_body) store_.engine().attach(store_.find(sensor), store_.find(owner));
+    if (store_.find(sensor) != no_body) store_.engine().transfer().attach(store_.find(sensor), store_.find(owner));
   }
   overlaps_ = std::move(overlaps);
 }

@@ -7,7 +7,7 @@
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/queries/standing_body.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 
 #include <algorithm>
 #include <stdexcept>

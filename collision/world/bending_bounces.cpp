@@ -1,9 +1,9 @@
-// How fast bodies bounce off meshes that bend.
+#include "collision/world/bending_bounces.hpp"
+
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/motions.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,31 +31,28 @@ PointRate rate_at(const certificates::RigidMotion<Degree>& motion, const Vector3
 }  // namespace
 
 template <class Motion>
-SurfaceRate Engine<Motion>::surface_rate(BodySlot slot, const Contact& contact, bool is_a) const {
-  return bends(slot) ? collision::surface_rate(bodies_.moving(slot), contact, is_a) : SurfaceRate{};
+SurfaceRate BendingBounces<Motion>::rate(BodySlot slot, const Contact& contact, bool is_a) const {
+  return bodies_.bends(slot) ? surface_rate(bodies_.moving(slot), contact, is_a) : SurfaceRate{};
 }
 
 template <class Motion>
-Vector3d Engine<Motion>::surface_velocity(BodySlot a, BodySlot b, const Contact& contact) const {
-  if (!bends(a, b)) return Vector3d::Zero();
-  return surface_rate(b, contact, false).velocity - surface_rate(a, contact, true).velocity;
+Vector3d BendingBounces<Motion>::velocity(BodySlot a, BodySlot b, const Contact& contact) const {
+  if (!bend(a, b)) return Vector3d::Zero();
+  return rate(b, contact, false).velocity - rate(a, contact, true).velocity;
 }
 
-/// The speed at which a body leaves a mesh that bends, after it has approached with `approach`, or parted if that is
-/// negative. It is at least so high that bounces take time and leave the tolerance within which contacts are found.
-/// Nothing rests on such a mesh: what lies on it bounces in flights of WorldOptions::shortest_flight.
 template <class Motion>
-double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact& contact, double approach,
-                                           std::uint64_t burst) const {
+double BendingBounces<Motion>::rebound(BodySlot a, BodySlot b, const Contact& contact, double approach,
+                                       std::uint64_t burst) const {
   const Vector3d& n = contact.normal;
   const double t = contact.time;
-  const SurfaceRate of_a = surface_rate(a, contact, true), of_b = surface_rate(b, contact, false);
+  const SurfaceRate of_a = rate(a, contact, true), of_b = rate(b, contact, false);
   const PointRate at_a = rate_at(bodies_.motion(a), contact.point, t),
                   at_b = rate_at(bodies_.motion(b), contact.point, t);
   const Vector3d velocity_a = at_a.velocity + of_a.velocity;
   const Vector3d velocity_b = at_b.velocity + of_b.velocity;
   // A surface that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
-  const Vector3d normal_rate = bends(a) ? of_a.normal_rate : of_b.normal_rate;
+  const Vector3d normal_rate = bodies_.bends(a) ? of_a.normal_rate : of_b.normal_rate;
   double pressed = -dot(n, at_b.acceleration - at_a.acceleration) - 2 * dot(normal_rate, velocity_b - velocity_a);
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
@@ -65,7 +62,7 @@ double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact
   }
   double tolerance = 0;
   for (const BodySlot slot : {a, b}) {
-    if (bends(slot)) tolerance = std::max(tolerance, bending_tolerance * bodies_[slot].bounding_radius);
+    if (bodies_.bends(slot)) tolerance = std::max(tolerance, bending_tolerance * bodies_[slot].bounding_radius);
   }
   const double met = std::max(-dot(n, velocity_b - velocity_a), 0.0);
   constexpr double least = 0x1p-26;         // of the speed at which they meet: what would stick parts
@@ -82,7 +79,7 @@ double Engine<Motion>::rebound_off_surface(BodySlot a, BodySlot b, const Contact
   return std::max(rebound, bending_tolerance * bodies_[mesh].bounding_radius / options_.shortest_flight);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) template class BendingBounces<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -156,6 +156,17 @@ class Bodies {
   PlacedShape shape(BodySlot slot) const { return moving(slot).shape; }
   /// Whether the body is fixed: no other body changes its motion.
   bool fixed(BodySlot slot) const { return bodies_[slot].inverse_mass == 0; }
+  /// Whether the body is a mesh that bends.
+  bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
+  /// Counts a meeting of the body at `now`: returns how many it has had within `interval` seconds.
+  std::uint64_t count_meeting(BodySlot slot, double now, double interval) {
+    Body& body = bodies_[slot];
+    if (now - body.burst_start > interval) {
+      body.meetings = 0;
+      body.burst_start = now;
+    }
+    return ++body.meetings;
+  }
 
   /// Fetches what a contact of the body needs.
   void prefetch(BodySlot slot) const {

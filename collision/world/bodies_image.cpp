@@ -171,7 +171,7 @@ void Bodies<Motion>::Image::check(double now) const {
     const auto need = [slot](bool right, const char* what) { image::require(right, "bodies", slot, what); };
     if (!body.alive) continue;
     check_shape(body.placed, slot);
-    need(!body.self_contacts || bends(body.placed.shape), "meets itself, and does not bend");
+    need(!body.self_contacts || collision::bends(body.placed.shape), "meets itself, and does not bend");
     need(body.motion.finite(), "its motion is not finite");
     need(!body.entered || path_of(body.motion).start <= now, "its motion begins after now");
     const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;

@@ -1,8 +1,8 @@
-// How bodies that keep their orientation bounce, and which of their contacts last.
+#include "collision/world/bounces.hpp"
+
 #include "collision/motions.hpp"
 #include "collision/response/impulse.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/engine.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -11,14 +11,27 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 
-/// The rate at which the two part; where it is zero, its first derivative that is not, up to a positive factor.
 template <class Motion>
-double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(!turns<Motion>) {
+Bounces<Motion>::Bounces(WorldParts<Motion>& parts, MotionUpdates<Motion>& motions, ListenerCalls<Motion>& calls,
+                         const BendingBounces<Motion>& bending)
+    : options_(parts.options),
+      clock_(parts.clock),
+      counters_(parts.counters),
+      bodies_(parts.bodies),
+      volumes_(parts.volumes),
+      walls_(parts.walls),
+      resting_(parts.resting),
+      motions_(motions),
+      calls_(calls),
+      bending_(bending) {}
+
+template <class Motion>
+double Bounces<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const {
   const auto& path_a = bodies_.path(a);
   const auto& path_b = bodies_.path(b);
   const double t = contact.time;
   const double rate = dot(contact.normal, path_b.velocity(t) - path_a.velocity(t));
-  if (bends(a, b)) return rate + dot(contact.normal, surface_velocity(a, b, contact));
+  if (bending_.bend(a, b)) return rate + dot(contact.normal, bending_.velocity(a, b, contact));
   if constexpr (Motion::degree >= 3) {
     if (rate != 0) return rate;
     const auto at_a = path_a.restarted(t), at_b = path_b.restarted(t);
@@ -32,9 +45,9 @@ double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) c
 }
 
 template <class Motion>
-void Engine<Motion>::process_wall() requires(!turns<Motion>) {
+void Bounces<Motion>::process_wall() {
   const BodySlot id = walls_.next_body();
-  const Body& body = bodies_[id];
+  const auto& body = bodies_[id];
   const int wall = walls_.next_wall();
   const int axis = wall / 2;
   const double out = wall % 2 != 0 ? 1 : -1;
@@ -52,8 +65,9 @@ void Engine<Motion>::process_wall() requires(!turns<Motion>) {
   ++counters_.wall_contacts;
   const double size = motion.coefficients[0].cwiseAbs().maxCoeff() + body.bounding_radius;
   const bool clustered = resting_.clustered(id) && !bodies_.fixed(id);
-  bool suppressed = !clustered && stays(rebound, pressed, size, count_meeting(id));
-  if (clustered && endless(count_meeting(id))) {
+  bool suppressed =
+      !clustered && stays(rebound, pressed, size, bodies_.count_meeting(id, clock_.now, options_.zeno.interval));
+  if (clustered && endless(bodies_.count_meeting(id, clock_.now, options_.zeno.interval))) {
     resting_.halt(id);
   } else if (clustered) {
     const bool rested = resting_.find(id, no_body, wall) != Resting::none;
@@ -70,34 +84,32 @@ void Engine<Motion>::process_wall() requires(!turns<Motion>) {
   }
   if (!clustered) resting_.disturb(id);
   resting_.solve();
-  const auto report = [&](Listener& listener) {
-    listener.wall(world_, event);
-    if (suppressed) listener.rebound_suppressed_at_wall(world_, event);
+  const auto report = [&](auto& listener, auto& world) {
+    listener.wall(world, event);
+    if (suppressed) listener.rebound_suppressed_at_wall(world, event);
   };
   try {
-    tell(report);
+    calls_.tell(report);
   } catch (...) {
-    take_up_bounce();
+    motions_.take_up_reported();
     throw;
   }
-  take_up_bounce();
+  motions_.take_up_reported();
 }
 
 /// If only this body is concerned, the parts of the world get its new motion after it has been reported, or before the
 /// next change if a callback makes one.
 template <class Motion>
-void Engine<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) requires(!turns<Motion>) {
+void Bounces<Motion>::bounce_off_wall(BodySlot slot, const Motion& motion) {
   ++counters_.motion_updates;
   const bool others = !resting_.empty() || volumes_.any_ends() || !bodies_.attachments().empty();
-  if (others) return set_motion(slot, motion, false);
-  bodies_.move(slot, motion);
-  bounced_ = slot;
+  others ? motions_.set(slot, motion, false) : motions_.set_after_report(slot, motion);
 }
 
 /// Whether two bodies that meet rest on each other from now on, without rebound: see ZenoPolicy. `pressed`: relative
 /// acceleration towards each other; `size`: magnitude of the coordinates.
 template <class Motion>
-bool Engine<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
+bool Bounces<Motion>::stays(double rebound, double pressed, double size, std::uint64_t burst) const {
   if (!(rebound > 0) || burst > options_.zeno.contacts) return true;
   if (!(pressed > 0)) return false;
   // At a large clock the doubles are sparse: a flight must last for several of them. And it must rise by several
@@ -112,15 +124,14 @@ bool Engine<Motion>::stays(double rebound, double pressed, double size, std::uin
 /// Whether the number of meetings at nearly one time says that they will not end: true at each multiple of
 /// ZenoPolicy::contacts.
 template <class Motion>
-bool Engine<Motion>::endless(std::uint64_t burst) const {
+bool Bounces<Motion>::endless(std::uint64_t burst) const {
   const std::uint64_t many = std::max(options_.zeno.contacts, 1u);
   return burst > many && burst % many == 0;
 }
 
 template <class Motion>
-bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
-                             std::uint64_t burst) requires(!turns<Motion>) {
-  if (bends(a, b)) {
+bool Bounces<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) {
+  if (bending_.bend(a, b)) {
     bounce_off_surface(a, b, contact, burst);
     return false;
   }
@@ -153,12 +164,11 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
 
 /// The mesh is fixed, so the other body leaves it with the velocity of the surface at the contact and the rebound.
 template <class Motion>
-void Engine<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact,
-                                        std::uint64_t burst) requires(!turns<Motion>) {
+void Bounces<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) {
   const BodySlot free = bodies_.fixed(a) ? b : a;
   const double rate = parting(a, b, contact);
   const Vector3d away = free == a ? Vector3d(-contact.normal) : contact.normal;
-  const double change = std::max(rebound_off_surface(a, b, contact, -rate, burst) - rate, 0.0);
+  const double change = std::max(bending_.rebound(a, b, contact, -rate, burst) - rate, 0.0);
   // Even a body that parts already begins a new piece: from here on what is near is looked at anew.
   Motion motion = bodies_.motion(free).restarted(contact.time);
   if (resting_.rests(free)) {
@@ -169,15 +179,14 @@ void Engine<Motion>::bounce_off_surface(BodySlot a, BodySlot b, const Contact& c
   }
   resting_.leave(free);
   ++counters_.motion_updates;
-  set_motion(free, motion, false);
+  motions_.set(free, motion, false);
   resting_.disturb(free);
   resting_.solve();
 }
 
 /// A contact in a cluster. Whether the two rest on each other from now on.
 template <class Motion>
-bool Engine<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
-                            double restitution) requires(!turns<Motion>) {
+bool Bounces<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact, double restitution) {
   const bool rested = resting_.find(a, b) != Resting::none;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.impact({.a = a, .b = b, .normal = contact.normal, .point = point}, restitution);
@@ -193,7 +202,7 @@ bool Engine<Motion>::strike(BodySlot a, BodySlot b, const Contact& contact,
 }
 
 template <class Motion>
-void Engine<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) requires(!turns<Motion>) {
+void Bounces<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) {
   ++counters_.rebounds_suppressed;
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
@@ -203,8 +212,8 @@ void Engine<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact) 
 
 /// A contact in no cluster. Whether the two rest on each other from now on.
 template <class Motion>
-bool Engine<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
-                                    std::uint64_t burst) requires(!turns<Motion>) {
+bool Bounces<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& contact, double restitution,
+                                     std::uint64_t burst) {
   Motion motion_a = bodies_.motion(a).restarted(contact.time);
   Motion motion_b = bodies_.motion(b).restarted(contact.time);
   const Vector3d& n = contact.normal;
@@ -225,14 +234,14 @@ bool Engine<Motion>::bounce_or_rest(BodySlot a, BodySlot b, const Contact& conta
   for (const auto& [id, motion] : {std::pair<BodySlot, const Motion&>{a, motion_a}, {b, motion_b}}) {
     if (bodies_.fixed(id)) continue;
     ++counters_.motion_updates;
-    set_motion(id, motion, false);
+    motions_.set(id, motion, false);
     resting_.disturb(id);
   }
   resting_.solve();
   return false;
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) template class Bounces<motion>;
 KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "collision/world/bodies_image.hpp"
-#include "collision/world/checked_pieces.hpp"
+#include "collision/world/edits/checked_pieces.hpp"
 #include "collision/world/engine.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/reports_image.hpp"
@@ -44,7 +44,7 @@ struct Engine<Motion>::Image {
   WorldCounters counters;
   EditLimit edits;
   typename Bodies<Motion>::Image bodies;
-  typename decltype(std::declval<Engine&>().parts())::Images parts;
+  typename decltype(std::declval<WorldParts<Motion>&>().list())::Images parts;
   std::vector<Reports::Report> pending;
 
   template <class Archive>

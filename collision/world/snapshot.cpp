@@ -50,29 +50,29 @@ void archive_options(Archive& archive, const WorldOptions& options, bool exact, 
 
 template <class Motion>
 typename Engine<Motion>::Image Engine<Motion>::image() const {
-  using Parts = decltype(parts());
-  static_assert(Parts::template all_are_parts<typename Bodies<Motion>::Image> && Parts::in_order());
+  using List = decltype(parts_.list());
+  static_assert(List::template all_are_parts<typename Bodies<Motion>::Image> && List::in_order());
   return {.now = clock_.now,
-          .callers_now = callers_now_,
+          .callers_now = callers_.now,
           .horizon = clock_.horizon,
-          .looked_for_until = looked_for_until_,
-          .counters = counters(),
-          .edits = edits_,
-          .bodies = bodies_.image(),
-          .parts = parts().images(),
-          .pending = reports_.image()};
+          .looked_for_until = callers_.looked_for_until,
+          .counters = parts_.all_counters(),
+          .edits = edits_.limit(),
+          .bodies = parts_.bodies.image(),
+          .parts = parts_.list().images(),
+          .pending = parts_.reports.image()};
 }
 
 template <class Motion>
 typename Engine<Motion>::Image Engine<Motion>::image_without_bodies(double t) const {
   Image image;
   image.now = image.callers_now = t;
-  image.horizon = t + options_.window;
-  image.counters = counters();
-  image.edits = edits_;
-  image.bodies = bodies_.image_without_bodies();
-  std::get<Timers::Image>(image.parts) = timers_.image();
-  std::get<typename Volumes<Motion>::Image>(image.parts) = volumes_.image();
+  image.horizon = t + parts_.options.window;
+  image.counters = parts_.all_counters();
+  image.edits = edits_.limit();
+  image.bodies = parts_.bodies.image_without_bodies();
+  std::get<Timers::Image>(image.parts) = parts_.timers.image();
+  std::get<typename Volumes<Motion>::Image>(image.parts) = parts_.volumes.image();
   return image;
 }
 
@@ -80,32 +80,31 @@ template <class Motion>
 void Engine<Motion>::become(const Image& image) {
   const auto change = [&] {
     clock_ = {image.now, image.horizon};
-    callers_now_ = image.callers_now;
-    looked_for_until_ = image.looked_for_until;
-    idle_until_ = next_time_ = -never;
-    idle_for_ever_ = false;
-    edits_ = image.edits;
-    bodies_.become(image.bodies);
-    reports_.become(image.pending);
-    parts().become(image.parts);
-    rebuild_broad_phase();
-    counters_ = image.counters;
-    counters_.broad_phase = image.counters.broad_phase - broad_phase_->counters();
+    callers_.now = image.callers_now;
+    callers_.looked_for_until = image.looked_for_until;
+    callers_.forget_next_event();
+    edits_.set_limit(image.edits);
+    parts_.bodies.become(image.bodies);
+    parts_.reports.become(image.pending);
+    parts_.list().become(image.parts);
+    parts_.rebuild_broad_phase();
+    parts_.counters = image.counters;
+    parts_.counters.broad_phase = image.counters.broad_phase - parts_.broad_phase->counters();
   };
-  change_or_fail(change);
-  failure_ = nullptr;
+  guard_.change(change);
+  guard_.mend();
 }
 
 template <class Motion>
 template <class Archive>
 void Engine<Motion>::archive(Archive& archive, Image& image) const {
   // A world that is broken by an exception may be loaded: then it is valid again.
-  if (!Archive::loading || stepping_ || volumes_.calling()) require_idle("World::archive");
+  if (!Archive::loading || guard_.stepping() || guard_.in_box_function()) guard_.require_idle("World::archive");
   archive.tag((turns<Motion> ? "World of bodies that turn, of degree " : "World of degree ") +
               std::to_string(Motion::degree) + ", form " + std::to_string(snapshot_form));
-  archive_options(archive, options_, broad_phase_->exact(), turns<Motion>);
-  image.archive(archive, bodies_.meshes());
-  if constexpr (Archive::loading) image.check(options_);
+  archive_options(archive, parts_.options, parts_.broad_phase->exact(), turns<Motion>);
+  image.archive(archive, parts_.bodies.meshes());
+  if constexpr (Archive::loading) image.check(parts_.options);
 }
 
 template <class Motion>
@@ -117,7 +116,7 @@ void Engine<Motion>::archive(Archive& archive) {
     if (loaded.bodies.lent()) image::fail("it is of a scene in parts, and its bodies are in these");
     become(loaded);
   } else {
-    require_idle("World::archive");
+    guard_.require_idle("World::archive");
     Image saved = image();
     this->archive(archive, saved);
   }

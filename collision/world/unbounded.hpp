@@ -4,7 +4,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "collision/world/world_part.hpp"
 #include "kds/audit.hpp"
 

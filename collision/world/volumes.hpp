@@ -63,7 +63,7 @@ class Volumes {
   bool any_from_callers() const { return !given_.empty(); }
   bool from_caller(BodySlot slot) const { return slot < given_.size() && given_[slot]; }
   /// Whether a caller's function is making a box at this moment.
-  bool calling() const { return calling_; }
+  const bool& calling() const { return calling_; }
 
   /// The present box: the last one of the caller's function, or that of the motion.
   Box box(BodySlot slot) const { return meshes_ ? grown(slot, bare_box(slot)) : bare_box(slot); }

@@ -21,7 +21,7 @@ enum class Stage {
 };
 
 /// A part of a world, with a state, a queue and laws of its own. The world derives from the list of its parts
-/// (Engine::parts) which event is next, what is audited, and what a snapshot consists of; what follows from an event
+/// (WorldParts::list) which event is next, what is audited, and what a snapshot consists of; what follows from an event
 /// for other parts is in its overload of Engine::process.
 ///
 /// 1. next_time() is a time up to which the part has no event, `never` if it knows of none: of those with the same time

@@ -1,6 +1,6 @@
 // The parts of a world that are about bodies that turn, each by itself.
 #include "collision/world/bodies_image.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 #include "collision/world/turning/turning_rest.hpp"
 #include "kds/audit.hpp"
@@ -79,10 +79,12 @@ struct Lying final : RestingListener<RigidMotion<2>> {
   WorldOptions options;
   Clock clock;
   Bodies<Motion> bodies;
-  TurningRest<Motion> rest{bodies, options, clock, *this};
+  TurningRest<Motion> rest{bodies, options, clock};
   BodySlot floor = add<2>(bodies, {.shape = Box{{9, 9, 1}}, .motion = {at({0, 0, -1}, 0)}, .fixed = true});
   std::vector<BodySlot> taken_up;
   std::vector<std::tuple<bool, BodySlot, BodySlot>> told;  ///< begins or ends, of whom
+
+  Lying() { rest.set_listener(*this); }
 
   void take_up(BodySlot slot, const Motion& motion) override {
     bodies.move(slot, motion);

@@ -1,10 +1,9 @@
-// How bodies that turn bounce off each other, off meshes that bend, and off walls.
+#include "collision/world/turning/turning_bounces.hpp"
+
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world.hpp"
-#include "collision/world/engine.hpp"
 #include "collision/world/turning/collapse.hpp"
 
 #include <algorithm>
@@ -36,11 +35,25 @@ bool has_no_room(const ZenoPolicy& zeno, double room, double speed, double press
 
 }  // namespace
 
-/// The rate at which b parts from a at the point of contact; 0 where it is no larger than roundings.
 template <class Motion>
-double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const requires(turns<Motion>) {
+TurningBounces<Motion>::TurningBounces(WorldParts<Motion>& parts, MotionUpdates<Motion>& motions,
+                                       ListenerCalls<Motion>& calls, const BendingBounces<Motion>& bending)
+    : options_(parts.options),
+      clock_(parts.clock),
+      counters_(parts.counters),
+      bodies_(parts.bodies),
+      tumbling_(parts.tumbling),
+      walls_(parts.walls),
+      reports_(parts.reports),
+      resting_(parts.resting),
+      motions_(motions),
+      calls_(calls),
+      bending_(bending) {}
+
+template <class Motion>
+double TurningBounces<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) const {
   const PointRates<Motion::degree> rates(bodies_.motion(a), bodies_.motion(b), contact.time);
-  const double rate = dot(contact.normal, rates.velocity(contact.point) + surface_velocity(a, b, contact));
+  const double rate = dot(contact.normal, rates.velocity(contact.point) + bending_.velocity(a, b, contact));
   return std::abs(rate) <= rates.noise(contact.point) ? 0 : rate;
 }
 
@@ -48,7 +61,7 @@ double Engine<Motion>::parting(BodySlot a, BodySlot b, const Contact& contact) c
 /// enough for a flight of WorldOptions::shortest_flight. Bodies that would stick part with a small share of the speed
 /// of approach. Otherwise the two would meet endlessly at one instant.
 template <class Motion>
-double Engine<Motion>::rebound(double approach, double pressed, double restitution) const requires(turns<Motion>) {
+double TurningBounces<Motion>::rebound(double approach, double pressed, double restitution) const {
   constexpr double least = 0x1p-26;  // of the speed of approach
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
@@ -56,16 +69,16 @@ double Engine<Motion>::rebound(double approach, double pressed, double restituti
 /// The motions of two bodies that meet after their impulse. They do not change where the two do not approach, unless
 /// one of them bends: then the other, which is within the tolerance, begins a new piece that leaves it.
 template <class Motion>
-TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Contact& contact,
-                                             std::uint64_t burst) requires(turns<Motion>) {
+TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, const Contact& contact,
+                                                     std::uint64_t burst) {
   const bool often = burst > options_.zeno.contacts;
   TurningImpact<Motion> result{met(a, contact.time), met(b, contact.time)};
   Motion& motion_a = result.a;
   Motion& motion_b = result.b;
   const Vector3d& n = contact.normal;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
-  const bool bending = bends(a, b);
-  double approach = -dot(n, rates.velocity(contact.point) + surface_velocity(a, b, contact));
+  const bool bending = bending_.bend(a, b);
+  double approach = -dot(n, rates.velocity(contact.point) + bending_.velocity(a, b, contact));
   // A ball that was placed on a floor and is pulled down meets it without approaching it.
   if (std::abs(approach) <= rates.noise(contact.point)) approach = std::max(approach, 0.0);
   result.approach = approach >= 0 || bending;
@@ -106,10 +119,10 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
   const double restitution = often ? 1 : std::min(bodies_[a].restitution, bodies_[b].restitution);
   RigidVelocity velocity_a{motion_a.path.coefficients[1], motion_a.angular_velocity};
   RigidVelocity velocity_b{motion_b.path.coefficients[1], motion_b.angular_velocity};
-  if (bends(a)) velocity_a.velocity += surface_rate(a, contact, true).velocity;
-  if (bends(b)) velocity_b.velocity += surface_rate(b, contact, false).velocity;
+  if (bodies_.bends(a)) velocity_a.velocity += bending_.rate(a, contact, true).velocity;
+  if (bodies_.bends(b)) velocity_b.velocity += bending_.rate(b, contact, false).velocity;
   const auto leaves_with = [&](double approaches) {
-    return bending ? rebound_off_surface(a, b, contact, approaches, burst) : rebound(approaches, pressed, restitution);
+    return bending ? bending_.rebound(a, b, contact, approaches, burst) : rebound(approaches, pressed, restitution);
   };
   const auto mobility_of = [&](BodySlot slot) { return resting_.carries(slot) ? Mobility::fixed() : mobility(slot); };
   const Mobility of_a = mobility_of(a), of_b = mobility_of(b);
@@ -140,7 +153,7 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
     give_impulse(velocity_a, of_a, arms.a, -result.impulse), give_impulse(velocity_b, of_b, arms.b, result.impulse);
   }
   const auto take_over = [&](BodySlot slot, const RigidVelocity& velocity, Motion& motion) {
-    if (!bends(slot))
+    if (!bodies_.bends(slot))
       motion.path.coefficients[1] = velocity.velocity, motion.angular_velocity = velocity.angular_velocity;
   };
   take_over(a, velocity_a, motion_a), take_over(b, velocity_b, motion_b);
@@ -151,14 +164,13 @@ TurningImpact<Motion> Engine<Motion>::impact(BodySlot a, BodySlot b, const Conta
 
 /// How much an impulse moves a body, at rest or not.
 template <class Motion>
-Mobility Engine<Motion>::mobility(BodySlot slot) const requires(turns<Motion>) {
+Mobility TurningBounces<Motion>::mobility(BodySlot slot) const {
   if (tumbling_.has(slot)) return Mobility::of(bodies_[slot].inverse_mass, tumbling_.inverse_inertia(slot));
   return Mobility::of_spherical(bodies_[slot].inverse_mass, bodies_[slot].inverse_inertia);
 }
 
 template <class Motion>
-bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
-                             std::uint64_t burst) requires(turns<Motion>) {
+bool TurningBounces<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact, std::uint64_t burst) {
   const bool may_wake = resting_.meet(a, b);
   TurningImpact<Motion> hit = impact(a, b, contact, burst);
   if (may_wake && hit.approach) {  // What rests wakes only where the impulse would move it.
@@ -179,7 +191,7 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
   if (!approach) {  // The pieces of their motions approach, their free rotations do not.
     turn_back(a, b, motion_a, motion_b, contact);
     for (const auto& [slot, motion] : both) {
-      if (precesses(slot)) set_motion(slot, motion, false);
+      if (precesses(slot)) motions_.set(slot, motion, false);
     }
     return false;
   }
@@ -195,14 +207,14 @@ bool Engine<Motion>::respond(BodySlot a, BodySlot b, const Contact& contact,
   for (const auto& [slot, motion] : both) {
     if (bodies_.fixed(slot) || resting_.carries(slot)) continue;
     ++counters_.motion_updates;
-    set_motion(slot, motion, false);
+    motions_.set(slot, motion, false);
   }
-  return !bends(a, b) && rests_now(a, b, contact);  // Nothing rests on what bends.
+  return !bending_.bend(a, b) && rests_now(a, b, contact);  // Nothing rests on what bends.
 }
 
 /// Whether two bodies that have met come to rest.
 template <class Motion>
-bool Engine<Motion>::rests_now(BodySlot a, BodySlot b, const Contact& contact) requires(turns<Motion>) {
+bool TurningBounces<Motion>::rests_now(BodySlot a, BodySlot b, const Contact& contact) {
   const bool rests = resting_.comes_to_rest(a, b, contact);
   counters_.rebounds_suppressed += rests;
   return rests;
@@ -210,7 +222,7 @@ bool Engine<Motion>::rests_now(BodySlot a, BodySlot b, const Contact& contact) r
 
 /// The motion of a body just before a contact, for one that precesses with the angular velocity of its free rotation.
 template <class Motion>
-Motion Engine<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
+Motion TurningBounces<Motion>::met(BodySlot slot, double t) {
   Motion motion = bodies_.motion(slot).restarted(t);
   if (!precesses(slot)) return motion;
   tumbling_.meet(slot, motion.orientation, t);
@@ -222,13 +234,13 @@ Motion Engine<Motion>::met(BodySlot slot, double t) requires(turns<Motion>) {
 /// their free rotations. As the additional rotation may close the gap again, only so much of it is used that the two
 /// bodies part with at least half of their speed.
 template <class Motion>
-void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
-                               const Contact& contact) requires(turns<Motion>) {
+void TurningBounces<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion& motion_b,
+                                       const Contact& contact) {
   if (!precesses(a) && !precesses(b)) return;
   const double t = contact.time;
   const auto parting = [&](const Motion& of_a, const Motion& of_b) {
     const Vector3d of_bodies = PointRates<Motion::degree>(of_a, of_b, t).velocity(contact.point);
-    return dot(contact.normal, of_bodies + surface_velocity(a, b, contact));
+    return dot(contact.normal, of_bodies + bending_.velocity(a, b, contact));
   };
   std::optional<RotationPiece> piece_a, piece_b;
   Motion back_a = motion_a, back_b = motion_b;
@@ -257,25 +269,12 @@ void Engine<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a, Motion&
   lead(a, motion_a, piece_a), lead(b, motion_b, piece_b);
 }
 
-template <class Motion>
-FreeTurning Engine<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
-  const BodySlot slot = bodies_.slot_of(id);
-  if (tumbling_.has(slot)) return tumbling_.turning(slot, now());
-  if (bodies_[slot].inverse_inertia == 0) {
-    throw std::invalid_argument("World::free_turning: nothing changes how body " + std::to_string(id) + " turns");
-  }
-  const Motion motion = bodies_.motion(slot).restarted(now());
-  const double length = norm(motion.orientation);
-  return {Eigen::Quaterniond(Eigen::Vector4d(motion.orientation.coeffs() / length)), motion.angular_velocity,
-          motion.angular_velocity / bodies_[slot].inverse_inertia};
-}
-
 /// Walls meet bounding balls, so they do not turn a body. One that has no room between two of them stands still along
 /// their axis from then on.
 template <class Motion>
-void Engine<Motion>::process_wall() requires(turns<Motion>) {
+void TurningBounces<Motion>::process_wall() {
   const BodySlot slot = walls_.next_body();
-  const Body& body = bodies_[slot];
+  const auto& body = bodies_[slot];
   const Walls& walls = *options_.walls;
   const int wall = walls_.next_wall();
   const int axis = wall / 2;
@@ -304,22 +303,14 @@ void Engine<Motion>::process_wall() requires(turns<Motion>) {
   ++counters_.wall_contacts;
   ++counters_.motion_updates;
   if (tumbling_.has(slot)) tumbling_.set_path(slot, motion.path);
-  set_motion(slot, motion, false);
-  tell([&](Listener& listener) {
-    listener.wall(world_, event);
-    if (held) listener.rebound_suppressed_at_wall(world_, event);
+  motions_.set(slot, motion, false);
+  calls_.tell([&](auto& listener, auto& world) {
+    listener.wall(world, event);
+    if (held) listener.rebound_suppressed_at_wall(world, event);
   });
 }
 
-/// Here and not in world.cpp, since clang 14 would instantiate it for other motions too.
-template <class Motion>
-FreeTurning BasicWorld<Motion>::free_turning(BodyId id) const requires(turns<Motion>) {
-  return engine_->free_turning(id);
-}
-
-#define KDS_INSTANTIATE(motion)           \
-  KDS_TEMPLATE_PART class Engine<motion>; \
-  template FreeTurning BasicWorld<motion>::free_turning(BodyId) const;
+#define KDS_INSTANTIATE(motion) template class TurningBounces<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -2,8 +2,8 @@
 #include "collision/motions.hpp"
 #include "collision/response/joint_impulse.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/engine.hpp"
 #include "collision/world/turning/collapse.hpp"
+#include "collision/world/turning/turning_bounces.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -15,9 +15,9 @@ namespace kds::collision {
 /// enough for a shortest flight: as after an impact without rebound and friction, which is what infinitely many of
 /// their contacts would come to. `hit` is the impact of the two bodies alone.
 template <class Motion>
-Collapse Engine<Motion>::part_together(BodySlot a, BodySlot b, const Contact& contact, const TurningImpact<Motion>& hit,
-                                       std::uint64_t burst) requires(turns<Motion>) {
-  if (burst < detail::collapse_meetings || bends(a, b)) return Collapse::none;
+Collapse TurningBounces<Motion>::part_together(BodySlot a, BodySlot b, const Contact& contact,
+                                               const TurningImpact<Motion>& hit, std::uint64_t burst) {
+  if (burst < detail::collapse_meetings || bending_.bend(a, b)) return Collapse::none;
   const double t = contact.time;
   const auto blows = resting_.note_blow(
       {.a = a, .b = b, .point = contact.point, .normal = contact.normal, .time = t, .least = hit.least});
@@ -71,14 +71,14 @@ Collapse Engine<Motion>::part_together(BodySlot a, BodySlot b, const Contact& co
       tumbling_.follow(slot, tumbling_.way_back(slot, motion.orientation, t), false, t);
     }
     ++counters_.motion_updates;
-    set_motion(slot, motion, false);
+    motions_.set(slot, motion, false);
     const BodyId id = bodies_.id_of(slot);
     if (slot != a && slot != b) reports_.add(Reports::Kind::moved, id, id, {.time = t});
   }
   return Collapse::parted;
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class TurningBounces<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -1,16 +1,15 @@
 // How bodies that precess go on from piece to piece.
 #include "collision/motions.hpp"
 #include "collision/world/earliest_wall_time.hpp"
-#include "collision/world/engine.hpp"
+#include "collision/world/motion_updates.hpp"
 #include "collision/world/turning/turning_extents.hpp"
 
 #include <algorithm>
 
 namespace kds::collision {
 
-/// A piece of a body that precesses is over. The next begins where it ends, so nothing has jumped.
 template <class Motion>
-void Engine<Motion>::turn_on() requires(turns<Motion>) {
+void MotionUpdates<Motion>::turn_on() requires(turns<Motion>) {
   const BodySlot slot = tumbling_.next_body();
   const double until = left_alone_until(slot);
   if (until > clock_.now) return tumbling_.leave_alone(slot, until);
@@ -22,7 +21,7 @@ void Engine<Motion>::turn_on() requires(turns<Motion>) {
 /// A time up to which nothing needs to know how the body is turned; now if there is none. What it may meet until then
 /// are bodies whose paths change, or that come near: their pairs are tested, and before that it is looked at.
 template <class Motion>
-double Engine<Motion>::left_alone_until(BodySlot slot) const requires(turns<Motion>) {
+double MotionUpdates<Motion>::left_alone_until(BodySlot slot) const requires(turns<Motion>) {
   const double now = clock_.now;
   const bool seen = !(tumbling_.unheard_until() > now) || options_.report_pairs || volumes_.any_from_callers() ||
                     !bodies_.attachments().empty() || !resting_.empty();
@@ -37,12 +36,12 @@ double Engine<Motion>::left_alone_until(BodySlot slot) const requires(turns<Moti
 
 /// A body that was left alone has the piece that it would have otherwise.
 template <class Motion>
-void Engine<Motion>::look_at(BodySlot slot) requires(turns<Motion>) {
+void MotionUpdates<Motion>::look_at(BodySlot slot) requires(turns<Motion>) {
   turn(slot, tumbling_.catch_up(slot, clock_.now));
 }
 
 template <class Motion>
-void Engine<Motion>::look_at_tested() requires(turns<Motion>) {
+void MotionUpdates<Motion>::look_at_tested() requires(turns<Motion>) {
   if (!tumbling_.any_alone()) return;
   pairs_.every_untested([&](BodySlot a, BodySlot b) {
     for (const BodySlot slot : {a, b}) {
@@ -53,8 +52,8 @@ void Engine<Motion>::look_at_tested() requires(turns<Motion>) {
 
 /// The body goes on along its path and turns otherwise. Pairs with a body that is alone wait until that is looked at.
 template <class Motion>
-void Engine<Motion>::turn(BodySlot slot, const Motion& motion) requires(turns<Motion>) {
-  const Stopwatch watch(profile(), Work::update);
+void MotionUpdates<Motion>::turn(BodySlot slot, const Motion& motion) requires(turns<Motion>) {
+  const Stopwatch watch(profile_, Work::update);
   bodies_.move(slot, motion);
   if (bodies_.in_broad_phase(slot)) broad_phase_->update(slot, volumes_.renew(slot), clock_.now, pairs_);
   pairs_.turned(slot, [this](BodySlot other) { return tumbling_.is_alone(other); });
@@ -63,7 +62,7 @@ void Engine<Motion>::turn(BodySlot slot, const Motion& motion) requires(turns<Mo
   if (!bodies_.attachments().empty()) move_attached(slot, false);
 }
 
-#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Engine<motion>;
+#define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class MotionUpdates<motion>;
 KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 

@@ -3,7 +3,7 @@
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
 #include "collision/world/turning/rest_rules.hpp"
 #include "kds/audit.hpp"
@@ -50,8 +50,8 @@ void TurningRest<Motion>::erase(Key key) {
   const auto it = pairs_.find(key);
   if (it->second.rests) {
     --resting_;
-    listener_.tell_resting(false,
-                           {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
+    listener_->tell_resting(false,
+                            {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
   }
   pairs_.erase(it);
   const auto unlist = [this](BodySlot slot, BodySlot other) {
@@ -158,7 +158,7 @@ void TurningRest<Motion>::solve() {
   for (const BodySlot slot : woken) {
     Motion motion = bodies_.motion(slot).restarted(clock_.now);
     if constexpr (Motion::degree >= 2) motion.path.coefficients[2] = bodies_.free_acceleration(slot);
-    listener_.take_up(slot, motion);
+    listener_->take_up(slot, motion);
   }
 }
 
@@ -344,7 +344,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     pair.point = (key == met ? contact.point : a.out(place.on_a)) - a.origin();
     pair.rests = true;
     ++resting_;
-    listener_.tell_resting(true, {.a = key.first, .b = key.second, .normal = pair.normal, .point = pair.point});
+    listener_->tell_resting(true, {.a = key.first, .b = key.second, .normal = pair.normal, .point = pair.point});
   }
   for (const BodySlot slot : group.bodies) {
     if (carries(slot)) continue;
@@ -356,7 +356,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     of_[slot].rests = true;
     of_[slot].ignored = {};
     of_[slot].since = never;
-    listener_.take_up(slot, carried_by(of_[slot].carrier, bodies_.motion(slot), t));
+    listener_->take_up(slot, carried_by(of_[slot].carrier, bodies_.motion(slot), t));
   }
 }
 

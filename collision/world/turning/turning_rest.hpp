@@ -8,7 +8,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/resting_contact.hpp"
+#include "collision/world/resting/resting_contact.hpp"
 #include "collision/world/turning/carrier.hpp"
 #include "collision/world/turning/collapse.hpp"
 #include "collision/world/world_part.hpp"
@@ -90,14 +90,12 @@ class TurningRest {
 
   using Listener = RestingListener<Motion>;
 
-  TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock, Listener& listener)
-      : bodies_(bodies),
-        flight_(options.shortest_flight),
-        clock_(clock),
-        listener_(listener),
-        blows_(options.zeno.interval) {}
+  TurningRest(const Bodies<Motion>& bodies, const WorldOptions& options, const Clock& clock)
+      : bodies_(bodies), flight_(options.shortest_flight), clock_(clock), blows_(options.zeno.interval) {}
   TurningRest(const TurningRest&) = delete;
   TurningRest& operator=(const TurningRest&) = delete;
+  /// It must be set before anything rests.
+  void set_listener(Listener& listener) { listener_ = &listener; }
 
   bool empty() const { return resting_ == 0; }
   /// Whether nothing is remembered that decides what comes to rest later.
@@ -255,7 +253,7 @@ class TurningRest {
   const Bodies<Motion>& bodies_;
   const double flight_;
   const Clock& clock_;
-  Listener& listener_;
+  Listener* listener_ = nullptr;
   std::map<Key, Pair> pairs_;
   std::vector<Member> of_;  ///< by body, up to the last that has been calm
   std::vector<BodySlot> woken_;

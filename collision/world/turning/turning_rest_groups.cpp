@@ -1,7 +1,7 @@
 // Groups of bodies that rest, or may come to rest: which there are, what holds them, and which of them an impact moves.
 #include "collision/motions.hpp"
 #include "collision/vectors.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
 #include "collision/world/turning/rest_rules.hpp"
 #include "collision/world/turning/turning_rest.hpp"

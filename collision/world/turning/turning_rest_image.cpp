@@ -2,7 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/turning_rest.hpp"
 
 #include <algorithm>

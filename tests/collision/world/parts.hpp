@@ -3,9 +3,9 @@
 
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "collision/world/reports.hpp"
-#include "collision/world/resting_contacts.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/volumes.hpp"
 #include "collision/world_counters.hpp"
 #include "collision/world_options.hpp"
@@ -26,8 +26,10 @@ struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listene
       : options(chosen),
         clock{options.start_time, options.start_time + options.window},
         volumes(bodies, options, clock),
-        resting(bodies, options, clock, *this),
-        pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {}
+        resting(bodies, options, clock),
+        pairs(bodies, volumes, resting, reports, options, clock, counters, nullptr) {
+    resting.set_listener(*this);
+  }
 
   /// Adds a body that has entered.
   BodySlot add(const BodyDescription<Degree>& description) {

@@ -2,7 +2,7 @@
 #include "collision/world/world_part.hpp"
 
 #include "collision/world/bodies_image.hpp"
-#include "collision/world/pairs.hpp"
+#include "collision/world/pairs/pairs.hpp"
 #include "collision/world/scripts.hpp"
 #include "collision/world/self_contacts.hpp"
 #include "collision/world/timers.hpp"

@@ -1,0 +1,345 @@
+// Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
+#include "collision/world/resting/resting_contacts.hpp"
+#include "collision/motions.hpp"
+#include "collision/vectors.hpp"
+#include "kds/audit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+
+namespace kds::collision {
+namespace {
+
+using Eigen::Vector3d;
+
+/// How far a resting pair may part before its contact ends, relative to the smaller bounding radius: balls that slide
+/// over each other follow a plane of contact until they have parted by this, and meet again on the next. Less makes
+/// that more exact, and costs more pieces.
+constexpr double slack = 0x1p-20;
+/// The same relative to the coordinates, which are rounded whenever a motion is restarted.
+constexpr double coordinate_slack = 0x1p-40;
+
+/// How far a mesh in a cluster may sink by rounding beyond its present contacts before that counts as a new contact;
+/// relative to the smaller bounding radius.
+constexpr double approach_slack = 0x1p-37;
+
+template <int Degree>
+certificates::PointMotion<Degree> shifted(certificates::PointMotion<Degree> motion, const Vector3d& by) {
+  motion.coefficients[0] += by;
+  return motion;
+}
+
+template <int Degree>
+double slack_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b, double t) {
+  const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  const double coordinates = a.motion.position(t).cwiseAbs().maxCoeff() + b.motion.position(t).cwiseAbs().maxCoeff();
+  return std::max(slack * size, coordinate_slack * coordinates);
+}
+
+}  // namespace
+
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodySlot a, BodySlot b, int wall) const {
+  // The shorter list is searched: a floor has many contacts.
+  const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
+  for (const Slot slot : of_[from_b ? b : a].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.a == a && contact.b == b && contact.wall == wall) return slot;
+  }
+  return none;
+}
+
+/// The contact of the same bodies and with nearly the same normal; convex bodies have one contact at most.
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const Contact& contact) const {
+  if (!gaps_.concave(contact)) return find(contact.a, contact.b, contact.wall);
+  if (!rests(contact.a)) return none;
+  for (const Slot slot : of_[contact.a].contacts) {
+    const Contact& other = contacts_[slot];
+    if (other.b == contact.b && dot(other.normal, contact.normal) > detail::same_normal) return slot;
+  }
+  return none;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::add(const Contact& contact) {
+  if (bodies_.numbered()) throw RestsInPart();
+  for (const Slot slot : member(contact.a).contacts) {
+    Contact& other = contacts_[slot];
+    if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
+      continue;
+    other.normal = contact.normal;
+    other.fresh = true;
+    return;
+  }
+  Slot slot;
+  if (free_.empty()) {
+    slot = static_cast<Slot>(contacts_.size());
+    contacts_.emplace_back();
+    if (releases_.slots() < contacts_.size()) releases_.resize(2 * contacts_.size());
+  } else {
+    slot = free_.back();
+    free_.pop_back();
+  }
+  contacts_[slot] = contact;
+  contacts_[slot].alive = true;
+  contacts_[slot].fresh = true;
+  contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
+  member(contact.a).contacts.push_back(slot);
+  if (contact.b != no_body) member(contact.b).contacts.push_back(slot);
+  listener_->tell_resting(true, contacts_[slot]);
+}
+
+template <class Motion>
+void RestingContacts<Motion>::drop(Slot slot) {
+  Contact& contact = contacts_[slot];
+  contact.alive = false;
+  listener_->tell_resting(false, contact);
+  releases_.clear(slot);
+  free_.push_back(slot);
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id == no_body) continue;
+    auto& list = of_[id].contacts;
+    list.erase(std::find(list.begin(), list.end(), slot));
+    disturb(id);
+  }
+  if (contact.b != no_body) listener_->changed(contact.a, contact.b);
+}
+
+template <class Motion>
+void RestingContacts<Motion>::drop_all(BodySlot id) {
+  while (rests(id)) drop(of_[id].contacts.back());
+}
+
+template <class Motion>
+bool RestingContacts<Motion>::drop_filtered(BodySlot id) {
+  if (!rests(id)) return false;
+  std::vector<Slot> over;
+  for (const Slot slot : of_[id].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.b != no_body && !bodies_.may_collide(contact.a, contact.b)) over.push_back(slot);
+  }
+  for (const Slot slot : over) drop(slot);
+  return !over.empty();
+}
+
+template <class Motion>
+std::vector<BodySlot> RestingContacts<Motion>::partners(BodySlot id) const {
+  std::vector<BodySlot> found;
+  if (!rests(id)) return found;
+  for (const Slot slot : of_[id].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.b != no_body && holds(contact.a, contact.b)) found.push_back(contact.a == id ? contact.b : contact.a);
+  }
+  return found;
+}
+
+/// Convex bodies that rest on each other stay on either side of a plane through the point of contact, so they cannot
+/// meet again before the contact ends. A mesh may meet the other body elsewhere. Where rounding makes the search find
+/// the resting contact itself, the body is moved away from it by some roundings, as long as the two motions stay as
+/// they are: so the answer does not depend on how often it is asked for.
+template <class Motion>
+double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
+  const auto a = bodies_.moving(id_a);
+  const auto b = bodies_.moving(id_b);
+  const bool plane = bodies_.unbounded(id_a) || bodies_.unbounded(id_b);
+  if (plane || (!concave(a.shape.shape) && !concave(b.shape.shape))) {
+    if (keeps_apart(find(id_a, id_b))) return never;
+    return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
+  }
+  const double began = std::max(a.motion.start, b.motion.start);
+  Vector3d out = Vector3d::Zero();
+  bool left_behind = false;
+  for (const Slot slot : of_[id_a].contacts) {
+    if (contacts_[slot].b != id_b) continue;
+    out += contacts_[slot].normal;
+    left_behind = left_behind || contacts_[slot].left_behind == began;
+  }
+  const double now = clock_.now;
+  if (clustered(id_a) || clustered(id_b)) {  // The approach that the solver's sweeps leave is no contact.
+    const double least = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+    const Motion farther = shifted(b.motion, approach_slack * least * out);
+    return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+  }
+  if (!left_behind) {
+    const double t = first_contact(a, b, now, clock_.horizon, ContactMode::resolved);
+    if (t != now) return t;
+    contacts_[find(id_a, id_b)].left_behind = began;
+  }
+  const double coordinates =
+      a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
+  const double size = a.shape.bounding_radius + b.shape.bounding_radius;
+  const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
+  return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+}
+
+/// A resting contact ends when the bodies have slid off each other, or have parted by `slack`.
+template <class Motion>
+void RestingContacts<Motion>::schedule_release(Slot slot) {
+  const Contact& contact = contacts_[slot];
+  if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // The cluster's spans end it.
+  if (contact.b == no_body) {  // Walls have no edge to slide off.
+    if constexpr (Motion::degree >= 3) releases_.set(slot, contact.ends);
+    return;
+  }
+  const double now = clock_.now;
+  const auto a = bodies_.moving(contact.a);
+  const auto b = bodies_.moving(contact.b);
+  bool together = true;
+  for (std::size_t i = 1; i <= Motion::degree; ++i) {
+    together = together && a.motion.coefficients[i] == b.motion.coefficients[i];
+  }
+  bool steady = true;  // the same polynomial about any start
+  for (std::size_t i = 2; i <= Motion::degree; ++i) steady = steady && a.motion.coefficients[i].isZero(0);
+  if (together && (steady || a.motion.start == b.motion.start)) {
+    return Motion::degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
+  }
+  const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * contact.normal);
+  const double t = first_separation(a, MovingShape<Motion>{b.shape, nearer}, now, clock_.horizon);
+  releases_.set(slot, Motion::degree >= 3 ? std::min(t, contact.ends) : t);
+}
+
+template <class Motion>
+void RestingContacts<Motion>::process() {
+  if (releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time)) {
+    const BodySlot id = spans_.top().slot;
+    spans_.clear(id);
+    disturb(id);
+    return solve();
+  }
+  const Slot slot = releases_.top().slot;
+  if (Motion::degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
+    part(slot);
+  } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
+    gather(bodies_.fixed(contacts_[slot].a) ? contacts_[slot].b : contacts_[slot].a);
+  } else {
+    drop(slot);
+  }
+  solve();
+}
+
+template <class Motion>
+void RestingContacts<Motion>::extend_horizon() {
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) {
+    const bool known = releases_.contains(slot) && (Motion::degree <= 2 || releases_.time(slot) < contacts_[slot].ends);
+    if (contacts_[slot].alive && !known) schedule_release(slot);
+  }
+}
+
+/// Each contact is of two bodies that are there (or one and a wall), is listed with them and no others, and lasts:
+/// along its normal the two have no relative velocity up to rounding, as drop_broken() measures it, and accelerations
+/// that cancel. The times at which contacts end lie ahead.
+template <class Motion>
+void RestingContacts<Motion>::audit(double t) const {
+  if (!solved()) return;
+  const auto fail = [](Slot slot, const char* what) {
+    throw AuditFailure("World: resting contact " + std::to_string(slot) + ": " + what);
+  };
+  std::size_t listed = 0;
+  std::size_t expected = 0;
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    const double ends = of_[id].span_ends;
+    if (ends == -never || ends == never) continue;
+    if (ends < t) throw AuditFailure("World: the span of body " + std::to_string(id) + "'s cluster should have ended");
+    if (spans_.empty() || spans_.top().time > ends) {
+      throw AuditFailure("World: no span ends when that of body " + std::to_string(id) + "'s cluster does");
+    }
+  }
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    for (const Slot slot : of_[id].contacts) {
+      ++listed;
+      if (slot >= contacts_.size() || !contacts_[slot].alive) fail(slot, "a body lists a contact that is none");
+      if (contacts_[slot].a != id && contacts_[slot].b != id) fail(slot, "a body lists it that has no part in it");
+    }
+  }
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) {
+    const Contact& contact = contacts_[slot];
+    if (!contact.alive) {
+      if (releases_.contains(slot)) fail(slot, "it has ended, but has a time at which it ends");
+      continue;
+    }
+    const bool at_wall = contact.b == no_body;
+    expected += at_wall ? 1 : 2;
+    for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
+      if (!bodies_.entered(id)) fail(slot, "a body is not there");
+      const auto& known = of_[id].contacts;
+      if (std::count(known.begin(), known.end(), slot) != 1) fail(slot, "a body does not know it");
+    }
+    if (at_wall && (contact.wall < 0 || contact.wall > 5 || !gaps_.any_walls())) fail(slot, "there is no such wall");
+    if (std::abs(norm(contact.normal) - 1) > 0x1p-40) fail(slot, "its normal has no unit length");
+    if (releases_.time(slot) < t) fail(slot, "it should have ended");
+    if (contact.fresh) continue;
+    if ((!at_wall || clustered(contact.a)) && gaps_.deeper(contact, contact.depth + gaps_.deepest_overlap(contact)))
+      fail(slot, "its bodies overlap");
+    if (clustered(contact.a) || (!at_wall && clustered(contact.b))) continue;
+    const Eigen::Vector3d a = bodies_.path(contact.a).velocity(t);
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    if (!at_wall) b = bodies_.path(contact.b).velocity(t);
+    double largest = std::max({a.cwiseAbs().maxCoeff(), b.cwiseAbs().maxCoeff(), contact.solved});
+    if constexpr (Motion::degree >=
+                  2) {  // Accelerations cancel along the normal, up to rounding, and act since the start.
+      for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b}) {
+        largest += 2 * bodies_.free_term(id, 2, t).cwiseAbs().maxCoeff() * (1 + t - bodies_.path(id).start);
+      }
+    }
+    if constexpr (Motion::degree >= 3) {
+      for (const BodySlot id : {contact.a, at_wall ? contact.a : contact.b})
+        largest += velocity_terms(bodies_.path(id), t);
+    }
+    if (std::abs(dot(contact.normal, b - a)) > 16 * rate_rounding * largest) {
+      fail(slot, "the bodies part or press on along its normal");
+    }
+  }
+  if (listed != expected) fail(static_cast<Slot>(contacts_.size()), "bodies list more contacts than there are");
+}
+
+template <class Motion>
+typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
+  Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
+  // The list may still contain bodies that have been removed, or solved for, since they were disturbed.
+  std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
+               [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
+  for (const Member& member : of_) {
+    image.of.push_back(member.contacts);
+    image.span_ends.push_back(member.span_ends);
+    image.calm_since.push_back(member.calm_since);
+    image.met.push_back(member.met);
+  }
+  for (BodySlot slot = 0; slot < spans_.slots(); ++slot) image.spans.push_back(spans_.time(slot));
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  return image;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::become(const Image& image) {
+  contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
+  islands_ = 0;
+  of_.clear();
+  for (BodySlot id = 0; id < image.of.size(); ++id) {
+    member(id).contacts = image.of[id];
+    member(id).span_ends = image.span_ends[id];
+    member(id).calm_since = image.calm_since[id];
+    member(id).met = image.met[id] != 0;
+  }
+  for (const BodySlot id : disturbed_) member(id).disturbed = true;
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    Member& member = of_[id];
+    const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };
+    member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)
+                                       : member.disturbed || !member.contacts.empty();
+  }
+  releases_.resize(0);
+  releases_.resize(contacts_.size());
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+  spans_.resize(0);
+  spans_.resize(image.spans.size());
+  for (BodySlot slot = 0; slot < image.spans.size(); ++slot) spans_.set(slot, image.spans[slot]);
+}
+
+#define KDS_INSTANTIATE(motion) template class RestingContacts<motion>;
+KDS_FOR_EACH_PATH(KDS_INSTANTIATE)
+#undef KDS_INSTANTIATE
+
+}  // namespace kds::collision
