@@ -96,9 +96,9 @@ class BodyStore {
     engine().forget(slots);
   }
   /// As Engine::note_passed().
-  std::vector<Timers::Image::One> note_passed(double t) {
-    if (part_) part_->engine().note_passed(t);  // which has no timers
-    return whole_.note_passed(t);
+  void note_passed(double t) {
+    if (part_) part_->engine().note_passed(t);
+    whole_.note_passed(t);
   }
 
  private:

@@ -121,6 +121,7 @@ class Engine final : private RestingListener<BodyMotionType> {
   /// Whether descriptions, scripts and progress of bodies, and the pairs that overlap, decide all later events.
   bool is_divisible() const;
   const Scripts<Motion>& scripts() const { return scripts_; }
+  const Timers& timers() const { return timers_; }
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
   /// Those that have not entered there enter with the next step, or when their motion begins. A sensor and the body to
   /// which it is attached come together. `known`: the slots of the bodies that were taken in before, by their numbers.

@@ -50,7 +50,7 @@ function(refuses_part expected)
     execute_process(COMMAND ${with} ${refused} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET
       ERROR_VARIABLE text)
     string(FIND "${text}" "${name}: ${expected}" place)
-    string(REGEX MATCHALL "run[.]state[^\n]*" lines "${text}")
+    string(REGEX MATCHALL "(^|\n)run[.]state[^\n]*" lines "${text}")  # which begin with the place, whoever found it
     list(LENGTH lines count)
     if(NOT ended EQUAL 2 OR place EQUAL -1 OR NOT count EQUAL 1)
       message(FATAL_ERROR "${with}: ended with ${ended}, and said:\n${text}\nnot once: ${name}: ${expected}")
