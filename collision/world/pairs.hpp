@@ -50,6 +50,8 @@ struct Pair {
 
 /// The order of pairs: by the keys of their bodies.
 struct PairRank {
+  static constexpr bool lasts = true;  ///< a pair that has an event is alive, and so are its bodies
+
   const LargeVector<Pair>* pairs;
   const BodyKeys* keys;
   PairKey operator()(std::uint32_t slot) const { return {keys->key((*pairs)[slot].a), keys->key((*pairs)[slot].b)}; }

@@ -49,7 +49,8 @@ void Pairs<Motion>::become(const Image& image) {
 template <class Motion>
 void Pairs<Motion>::clear() {
   become({});
-  pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit(), of_ = {};
+  pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit();
+  of_ = {}, links_ = {}, estimates_ = {}, free_ = {};
 }
 
 template <class Motion>

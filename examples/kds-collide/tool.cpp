@@ -180,6 +180,7 @@ class Simulation {
 
   void commit() {
     each_output([](auto& output) { output.commit(); });
+    if (arguments_.resume) checkpoints_->finish(checkpoint_.bodies.size());
     if (!arguments_.quiet && team_.rank() == 0) print_summary(result_);
   }
 
