@@ -112,7 +112,7 @@ void CheckpointWriter::commit(Checkpoint checkpoint) {
   // No file names those before any more. Of this run each process has written one, at most.
   std::error_code ignored;
   if (std::exchange(is_first_, false)) {
-    remove_others(checkpoint.bodies.size());
+    remove_others(checkpoint.turn, checkpoint.bodies.size());
   } else {
     std::filesystem::remove(bodies_path(file_, turn_, team_.rank()), ignored);
   }
@@ -135,18 +135,23 @@ std::vector<FilePlace> CheckpointWriter::places() {
   return all;
 }
 
-/// Files of bodies that the checkpoint does not name which is there now, of so many processes: of the one before it,
-/// and of runs that were ended. Each process removes some.
-void CheckpointWriter::remove_others(std::size_t named) const {
-  for (const std::uint64_t turn : {turn_, 1 - turn_}) {
+void CheckpointWriter::finish(std::size_t named) const {
+  if (is_first_) remove_others(turn_, named);
+}
+
+/// Files of bodies that the checkpoint does not name which is there now, of this turn and so many processes: of the one
+/// before it, and of runs that were ended. Each process removes some.
+void CheckpointWriter::remove_others(std::uint64_t turn_named, std::size_t named) const {
+  std::error_code ignored;
+  for (const std::uint64_t turn : {turn_named, 1 - turn_named}) {
     const std::string parts = file_.string() + turn_ending(turn);
     for (const char* const ending : {"", ".unfinished"}) {
+      const bool whole = *ending == 0;
       for (const std::size_t number : part_numbers(parts, ending)) {
-        const bool is_named = turn != turn_ && number < named && *ending == 0;
         const std::filesystem::path left = part_path(parts, number) + ending;
-        if (is_named || number % team_.count() != team_.rank() || !has_format(left, part_of_checkpoint)) continue;
-        std::error_code ignored;
-        std::filesystem::remove(left, ignored);
+        if (number % team_.count() != team_.rank() || (whole && turn == turn_named && number < named)) continue;
+        const bool not_begun = !whole && std::filesystem::file_size(left, ignored) == 0;
+        if (not_begun || has_format(left, part_of_checkpoint)) std::filesystem::remove(left, ignored);
       }
     }
   }

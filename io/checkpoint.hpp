@@ -64,10 +64,13 @@ class CheckpointWriter {
   void write_bodies(const std::vector<char>& block);
   /// `checkpoint`: in process 0, but for what is about the bodies that have been written; the others' does not count.
   void commit(Checkpoint checkpoint);
+  /// At the end of a run that has gone on from a checkpoint with the bodies in so many files: removes what earlier runs
+  /// have left, if no checkpoint of this run has.
+  void finish(std::size_t named) const;
 
  private:
   std::vector<FilePlace> places();
-  void remove_others(std::size_t named) const;
+  void remove_others(std::uint64_t turn_named, std::size_t named) const;
 
   const std::filesystem::path file_;
   kds::collision::Team& team_;

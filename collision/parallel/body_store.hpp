@@ -96,9 +96,9 @@ class BodyStore {
     engine().transfer().forget(slots);
   }
   /// As Transfer::note_passed().
-  std::vector<Timers::Image::One> note_passed(double t) {
-    if (part_) part_->engine().transfer().note_passed(t);  // which has no timers
-    return whole_.transfer().note_passed(t);
+  void note_passed(double t) {
+    if (part_) part_->engine().transfer().note_passed(t);
+    whole_.transfer().note_passed(t);
   }
 
  private:

@@ -139,8 +139,7 @@ double Domains<Motion>::halo_used(const Domain<Motion>& domain, double nearest_s
 
 template <class Motion>
 void Domains<Motion>::commit(double now) {
-  const auto rung = store_.note_passed(now);
-  rung_.insert(rung_.end(), rung.begin(), rung.end());
+  store_.note_passed(now);
   overlaps_.clear();
   for (const auto& domain : domains_) {
     const auto of_domain = domain->overlaps();

@@ -84,12 +84,10 @@ class Domains {
   const StepOutcome& outcome() const { return outcome_; }
   /// The step, up to `now`, holds: brings the bodies of the store to its end.
   void commit(double now);
-  /// The events of the step that was committed, of the domains of this process.
+  /// The events of a step that holds, before it is committed, of the domains of this process.
   StepEvents take_step();
   /// The same of all domains, in process 0; none in others.
   EventMerge take_events();
-  /// Timers that have rung in steps that were committed, in order: the same in all processes.
-  std::vector<Timers::Image::One> take_timers() { return std::exchange(rung_, {}); }
 
   /// After the last step of a window that was committed, at `now`: finds out who is to own and to know which bodies,
   /// and tells those who are to know them. Then exchange() or make().
@@ -174,7 +172,6 @@ class Domains {
   std::vector<std::vector<BodySlot>> go_, come_;
   std::vector<BodySlot> gone_;                       ///< numbers of those that no domain of this process is to know
   std::vector<std::shared_ptr<const Mesh>> meshes_;  ///< of all bodies; the same in all processes
-  std::vector<Timers::Image::One> rung_;             ///< timers that are still to be told of
   std::uint64_t copies_made_ = 0;                    ///< of bodies owned here, since the last step that held
   /// Pairs that overlap, by numbers: where a window begins all of which a domain of this process knows both bodies.
   std::vector<Overlap> overlaps_;

@@ -5,7 +5,7 @@
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/parallel/relayed_events.hpp"
-#include "collision/parallel/step_events.hpp"
+#include "collision/parallel/untold_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "collision/world/engine_image.hpp"
 #include "kds/raised_flag.hpp"
@@ -13,7 +13,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <deque>
 #include <functional>
 #include <optional>
 #include <span>
@@ -99,6 +98,13 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     }
     begin_at(image.callers_now);
   }
+  void change(std::function<void(World&)> change) {
+    if (!telling_) throw std::logic_error("ParallelWorld::change: must be called from within a callback; else whole()");
+    if (team_.count() > 1) {
+      throw std::logic_error("ParallelWorld::change: several processes run the scene, and this is called in one");
+    }
+    relayed_.add_change(std::move(change));
+  }
   bool divided() const { return domains_.any(); }
   /// Whether the bodies are not in the whole world.
   bool apart() const { return divided() || domains_.store().is_part(); }
@@ -126,14 +132,14 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     if (!apart() && world_.now() != now_) {
       throw std::logic_error("ParallelWorld::advance_to: the whole world has been advanced by itself");
     }
-    tell_events();
     do {
-      if (!divided() && !divide()) {
+      if (untold_.any()) {
+        finish_step(t);
+      } else if (!divided() && !divide()) {
         run_whole(t);
       } else {
         run_window(t);
       }
-      tell_events();
     } while (now_ < t);
   }
 
@@ -155,7 +161,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   void require_told(const char* function) const {
     require_outside(function);
-    if (events_.empty() && timers_.empty()) return;
+    if (!untold_.any()) return;
     throw std::logic_error(std::string(function) +
                            ": a listener has thrown, and the events after that are still to be told, by advance_to()");
   }
@@ -170,10 +176,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   // One world.
 
-  /// A stretch of time as one world, up to t. Each is longer than the one before, until the scene can be divided.
-  void run_whole(double t) {
+  /// A stretch of time as one world, up to t, and to `least` at least. Each is longer than the one before, until the
+  /// scene can be divided.
+  void run_whole(double t, double least = -never) {
     if (apart()) gather(now_);
-    const double end = stretch_ > 0 && now_ + stretch_ > now_ ? std::min(t, now_ + stretch_) : t;
+    const double end = std::max(stretch_ > 0 && now_ + stretch_ > now_ ? std::min(t, now_ + stretch_) : t, least);
     stretch_ *= 2;
     ++counters_.stretches_whole;
     unstarted_ = false;
@@ -253,14 +260,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       throw;
     }
     if (domains_.outcome().holds()) {
-      const double used = domains_.outcome().halo_used;
-      commit(end);
-      stretch_ = 0;
-      const double elapsed = now_ - window_begun_;
-      if (length_.goes_on(elapsed, used) && now_ < window_begun_ + longest_) return;
-      length_.held(elapsed, used);
-      ++counters_.windows;
-      return end_window();
+      take_events(end);
+      return finish_step(t);
     }
     ++counters_.windows_failed;
     constexpr std::size_t most_failures = 6;
@@ -269,6 +270,44 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     domains_.end_window(now_);
     begin_window();
     domains_.make(now_);
+  }
+
+  /// After a step that holds, up to `end`.
+  void take_events(double end) {
+    std::optional<StepEvents> step;
+    if (parallel_.steps) step = domains_.take_step();
+    EventMerge events;
+    if (!parallel_.steps) events = domains_.take_events();
+    untold_.begin(end, std::move(events), store_.parts().timers.due(end), std::move(step));
+  }
+
+  /// Tells of the events of a step, and commits it, unless the listener has asked for a change: then nothing that
+  /// follows has happened yet.
+  void finish_step(double t) {
+    {
+      const kds::detail::RaisedFlag telling(telling_);
+      untold_.tell(listener_, parallel_.steps, [this] { return relayed_.awaits_change(); });
+    }
+    const double end = untold_.finish();
+    if (relayed_.awaits_change()) return run_to_change(t);
+    const double used = domains_.outcome().halo_used;
+    commit(end);
+    stretch_ = 0;
+    const double elapsed = now_ - window_begun_;
+    if (length_.goes_on(elapsed, used) && now_ < window_begun_ + longest_) return;
+    length_.held(elapsed, used);
+    ++counters_.windows;
+    end_window();
+  }
+
+  /// Runs the scene from the beginning of the step as one world. The events that have been told are not told again; at
+  /// the last of them the change is made.
+  void run_to_change(double t) {
+    ++counters_.windows_failed;
+    relayed_.pass_over(untold_.told());
+    stretch_ = std::max({stretch_, untold_.told_until() - now_, length_.step()});
+    gather(now_);
+    run_whole(t, untold_.told_until());
   }
 
   /// Runs a stretch of time through which windows do not get.
@@ -290,12 +329,6 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.copies_made += outcome.copies_made;
     ++counters_.steps;
     now_ = end;
-    for (const auto& timer : domains_.take_timers()) timers_.push_back(timer);
-    if (parallel_.steps) {
-      step_ = domains_.take_step();
-    } else {
-      events_ = domains_.take_events();
-    }
   }
 
   void end_window() {
@@ -321,29 +354,6 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     return most * domains_.size() > all + all / 2;
   }
 
-  void tell_events() {
-    const kds::detail::RaisedFlag telling(telling_);
-    if (step_) parallel_.steps->on_step(*std::exchange(step_, std::nullopt));
-    while (!events_.empty()) {
-      const DomainEvent& next = events_.next();
-      tell_timers(next.contact.time, next.kind != DomainEvent::Kind::overlap);
-      relay(events_.take_next(), *listener_);
-    }
-    tell_timers(now_, true);
-  }
-  /// Tells of the timers that have rung before t, and with `then` also of those at t. At one time overlaps are told
-  /// first.
-  void tell_timers(double t, bool then) {
-    const auto is_due = [&] {
-      return !timers_.empty() && (timers_.front().time < t || (then && timers_.front().time == t));
-    };
-    while (is_due()) {
-      const auto [time, timer] = timers_.front();
-      timers_.pop_front();
-      if (listener_) listener_->timer(timer, time);
-    }
-  }
-
   const ParallelOptions parallel_;
   Team team_;
   const std::size_t threads_;  ///< of this process
@@ -353,11 +363,9 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   World world_;            ///< runs the scene while it is one world; else has its bodies, or lends them
   Engine<Motion>& store_;  ///< of world_
   double now_;
-  Domains<Motion> domains_;                ///< none while the scene is one world
-  const bool logs_;                        ///< whether domains record events
-  EventMerge events_;                      ///< that have not been told yet
-  std::deque<Timers::Image::One> timers_;  ///< that have rung, and have not been told yet
-  std::optional<StepEvents> step_;         ///< the same, where each process takes those of its own domains
+  Domains<Motion> domains_;  ///< none while the scene is one world
+  const bool logs_;          ///< whether domains record events
+  UntoldEvents untold_;
   WindowLength length_;
   double window_begun_ = 0;  ///< s
   double longest_ = 0;       ///< s: the longest that the window may be

@@ -3,7 +3,9 @@
 #include "collision/motions.hpp"
 #include "collision/parallel/parallel_runner.hpp"
 
+#include <functional>
 #include <memory>
+#include <utility>
 
 namespace kds::collision {
 
@@ -28,6 +30,11 @@ void BasicParallelWorld<Motion>::add_shares(std::size_t count, const std::functi
 template <class Motion>
 void BasicParallelWorld<Motion>::advance_to(double t) {
   runner_->advance_to(t);
+}
+
+template <class Motion>
+void BasicParallelWorld<Motion>::change(std::function<void(World&)> change) {
+  runner_->change(std::move(change));
 }
 
 template <class Motion>

@@ -16,8 +16,8 @@
 
 namespace kds::collision {
 
-/// Told of the events of a ParallelWorld: those of a WorldListener that are about contacts, in the same order. It must
-/// not call functions of the world that is telling it.
+/// Told of the events of a ParallelWorld: those of a WorldListener that are about contacts, in the same order. Of the
+/// functions of the world that is telling it, it may call change() alone.
 class ParallelListener {
  public:
   virtual ~ParallelListener() = default;
@@ -86,8 +86,17 @@ class BasicParallelWorld final {
   World& whole();
 
   /// Processes everything up to and including t. Throws as World::advance_to(), and std::logic_error if called from
-  /// within a callback. If a listener throws, its event counts as told, and the next call goes on with the next one.
+  /// within a callback. If a listener throws, its event counts as told, and the next call goes on with the next one;
+  /// until then no other function that is not const may be called.
   void advance_to(double t);
+
+  /// From within a callback: `change` is called with the whole world when the callback returns, at the time of the
+  /// event that is being told, and may do what a callback of a World may do. So the events are those of a World whose
+  /// listener makes the same changes. Costs nothing to those who do not call it. While the scene is divided, what
+  /// domains have computed of times after the event is thrown away, the step is run as one world up to the event, and
+  /// the scene is divided anew: what adding all bodies costs, so that a change now and then is cheap, and many in the
+  /// time of a window are not. Throws std::logic_error outside of callbacks, and if several processes run the scene.
+  void change(std::function<void(World&)> change);
 
   /// Saves or loads the scene, as a World does: see save() and restore() in kds/framework/snapshot.hpp. What one of the
   /// two has saved the other can load, and it does not matter how many domains or processes there were. After loading

@@ -6,6 +6,11 @@
 #include "collision/parallel/world_events.hpp"
 #include "collision/world/bodies.hpp"
 
+#include <cstddef>
+#include <functional>
+#include <utility>
+#include <vector>
+
 namespace kds::collision {
 
 /// Tells a listener of an event that a domain has recorded.
@@ -19,47 +24,81 @@ inline void relay(const DomainEvent& event, ParallelListener& listener) {
   if (event.kind == DomainEvent::Kind::overlap) listener.overlap(pair);
 }
 
-/// Passes on what a World tells while the scene is run as one, and counts it.
+/// Passes on what a World tells while the scene is run as one, and counts it. Makes the changes for which the listener
+/// has asked, when it has been told of the event.
 template <class Motion>
 class RelayedEvents final : public BasicWorldListener<Motion> {
  public:
   using World = BasicWorld<Motion>;
+  using Change = std::function<void(World&)>;
 
   /// `listener`: null if there is none.
   RelayedEvents(ParallelListener* listener, ParallelCounters& counters)
       : listener_(listener ? *listener : silent_), counters_(counters) {}
 
-  void contact(World&, const PairEvent& event) override {
+  /// At the event that is being told, or the last of those that are passed over.
+  void add_change(Change change) { changes_.push_back(std::move(change)); }
+  bool awaits_change() const { return !changes_.empty(); }
+  /// The listener has been told of so many of the events that follow.
+  void pass_over(std::size_t events) { to_pass_over_ = events; }
+
+  void contact(World& world, const PairEvent& event) override {
     ++counters_.contacts;
-    listener_.contact(event);
+    tell(world, [&] { listener_.contact(event); });
   }
-  void separation(World&, const PairEvent& event) override {
+  void separation(World& world, const PairEvent& event) override {
     ++counters_.separations;
-    listener_.separation(event);
+    tell(world, [&] { listener_.separation(event); });
   }
-  void overlap(World&, const PairEvent& event) override {
+  void overlap(World& world, const PairEvent& event) override {
     ++counters_.overlaps;
-    listener_.overlap(event);
+    tell(world, [&] { listener_.overlap(event); });
   }
-  void wall(World&, const WallEvent& event) override {
+  void wall(World& world, const WallEvent& event) override {
     ++counters_.wall_contacts;
-    listener_.wall(event);
+    tell(world, [&] { listener_.wall(event); });
   }
-  void rebound_suppressed(World&, const PairEvent& event) override { listener_.rebound_suppressed(event); }
-  void rebound_suppressed_at_wall(World&, const WallEvent& event) override {
-    listener_.rebound_suppressed_at_wall(event);
+  void rebound_suppressed(World& world, const PairEvent& event) override {
+    tell(world, [&] { listener_.rebound_suppressed(event); });
   }
-  void rests(World&, const PairEvent& event) override { listener_.rests(event); }
-  void rests_at_wall(World&, const WallEvent& event) override { listener_.rests_at_wall(event); }
-  void wakes(World&, const PairEvent& event) override { listener_.wakes(event); }
-  void wakes_at_wall(World&, const WallEvent& event) override { listener_.wakes_at_wall(event); }
-  void passes(World&, const PairEvent& event) override { listener_.passes(event); }
-  void timer(World& world, TimerId timer) override { listener_.timer(timer, world.now()); }
+  void rebound_suppressed_at_wall(World& world, const WallEvent& event) override {
+    tell(world, [&] { listener_.rebound_suppressed_at_wall(event); });
+  }
+  void rests(World& world, const PairEvent& event) override {
+    tell(world, [&] { listener_.rests(event); });
+  }
+  void rests_at_wall(World& world, const WallEvent& event) override {
+    tell(world, [&] { listener_.rests_at_wall(event); });
+  }
+  void wakes(World& world, const PairEvent& event) override {
+    tell(world, [&] { listener_.wakes(event); });
+  }
+  void wakes_at_wall(World& world, const WallEvent& event) override {
+    tell(world, [&] { listener_.wakes_at_wall(event); });
+  }
+  void passes(World& world, const PairEvent& event) override {
+    tell(world, [&] { listener_.passes(event); });
+  }
+  void timer(World& world, TimerId timer) override {
+    tell(world, [&] { listener_.timer(timer, world.now()); });
+  }
 
  private:
+  template <class Tell>
+  void tell(World& world, const Tell& tell) {
+    if (to_pass_over_ == 0) {
+      tell();
+    } else if (--to_pass_over_ > 0) {
+      return;
+    }
+    for (const Change& change : std::exchange(changes_, {})) change(world);
+  }
+
   ParallelListener silent_;
   ParallelListener& listener_;
   ParallelCounters& counters_;
+  std::vector<Change> changes_;
+  std::size_t to_pass_over_ = 0;
 };
 
 }  // namespace kds::collision

@@ -86,6 +86,8 @@ struct PairKey {
 
 /// The order of events in queues whose slots are bodies.
 struct BodyRank {
+  static constexpr bool lasts = true;  ///< who has an event is there, and has its key
+
   const BodyKeys* keys;
   BodyId operator()(std::uint32_t slot) const { return keys->key(slot); }
 };

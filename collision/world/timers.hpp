@@ -82,6 +82,13 @@ class Timers {
       }
     }
   };
+  /// Those that ring up to t, in order.
+  std::vector<Image::One> due(double t) const {
+    std::vector<Image::One> due;
+    for (auto timer = timers_.begin(); timer != timers_.end() && timer->first <= t; ++timer)
+      due.push_back({timer->first, timer->second});
+    return due;
+  }
   Image image() const {
     Image image{{}, next_};
     for (const auto& [time, timer] : timers_) image.timers.push_back({time, timer});

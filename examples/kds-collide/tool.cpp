@@ -180,6 +180,7 @@ class Simulation {
 
   void commit() {
     each_output([](auto& output) { output.commit(); });
+    if (arguments_.resume) checkpoints_->finish(checkpoint_.bodies.size());
     if (!arguments_.quiet && team_.rank() == 0) print_summary(result_);
   }
 
@@ -280,6 +281,9 @@ Failure attempt(const std::string& name, const Arguments& arguments, const Call&
   }
 }
 
+/// At the end of the line, which begins with the place of what is wrong, however many processes there are.
+std::string in_process(std::size_t rank) { return " (process " + std::to_string(rank) + ")"; }
+
 /// That of the first process that has failed.
 Failure first_of(kds::collision::Team& team, Failure failure) {
   std::array<double, 1> from_the_end{failure.code == done ? 0 : static_cast<double>(team.count() - team.rank())};
@@ -294,7 +298,7 @@ Failure first_of(kds::collision::Team& team, Failure failure) {
   if (team.rank() == first && first > 0) letters.to(0)(failure.line);
   team.exchange(std::move(letters), [&](std::size_t process, auto& reader) {
     reader(failure.line);
-    failure.line = "process " + std::to_string(process) + ": " + failure.line;
+    failure.line += in_process(process);
   });
   return failure;
 }
@@ -374,7 +378,7 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   });
   if (failure.code != done && team.count() == 1) unlock();
   if (failure.code != done && team.count() > 1) {
-    failure.line = "process " + std::to_string(team.rank()) + ": " + failure.line;
+    failure.line += in_process(team.rank());
     simulation.reset();  // removes temporary files
     // What fails in all processes is said once: process 0 ends the others while they wait.
     constexpr std::chrono::seconds longest_until_all_have_failed(2);

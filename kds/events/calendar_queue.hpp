@@ -20,8 +20,9 @@ namespace kds {
 /// more, and then changes nothing.
 ///
 /// Each slot that has an event has a record, which is used again when the event is over. So a slot without event takes
-/// four bytes, and slots may be numbered sparsely; a record takes 52 to 68, and its rank, if it is not the slot. set()
-/// allocates where more slots have events than ever before, resize() for its slots, and nothing else does.
+/// four bytes, and slots may be numbered sparsely; a record takes 36 to 52, and its rank, unless that is the slot or
+/// lasts (Rank::lasts, event_queue.hpp). set() allocates where more slots have events than ever before, resize() for
+/// its slots, and set() and top() where more events than ever before are on the present day, which has about one.
 ///
 /// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
 /// years to come. A day is an unsorted, doubly linked list of its records, so that set and clear touch a constant
@@ -70,6 +71,7 @@ class CalendarQueue {
 
  private:
   static constexpr bool has_ranks = !std::is_same_v<Rank, SlotRank>;
+  static constexpr bool keeps_ranks = has_ranks && !LastingRank<Rank>;
 
   // These change the speed, never the order.
   static constexpr std::size_t days_per_event = 4;  ///< in a year. More make years rarer and take more memory
@@ -107,11 +109,20 @@ class CalendarQueue {
   bool earlier(const Due& a, const Due& b) const {
     if (a.time != b.time) return a.time < b.time;
     if constexpr (has_ranks) {
-      if (ranks_[a.record] != ranks_[b.record]) return ranks_[a.record] < ranks_[b.record];
+      const auto rank_a = rank_of(a), rank_b = rank_of(b);
+      if (rank_a != rank_b) return rank_a < rank_b;
     }
     return a.slot < b.slot;
   }
+  RankOf<Rank> rank_of(const Due& due) const {
+    if constexpr (keeps_ranks) {
+      return ranks_[due.record];
+    } else {
+      return rank_(due.slot);
+    }
+  }
 
+  void forget_all();
   std::uint32_t take_record() { return free_ != none ? std::exchange(free_, nodes_[free_].next) : add_record(); }
   std::uint32_t add_record();
   void drop(Slot slot);
@@ -154,7 +165,7 @@ class CalendarQueue {
   mutable std::size_t bill_ = 0;        // cost of long days, in events; beyond the number of events a new year is begun
   LargeVector<std::uint32_t> records_;  // by slot
   LargeVector<Slot> slots_;             // by record
-  LargeVector<RankOf<Rank>> ranks_;     // by record, as they were when it was set; empty for SlotRank
+  LargeVector<RankOf<Rank>> ranks_;     // by record, as they were when it was set; empty for ranks that last
   std::uint32_t free_ = none;           // first of the records of no slot, linked by `next`
   std::size_t size_ = 0;
   std::uint64_t operations_ = 0;
@@ -169,10 +180,19 @@ void CalendarQueue<Rank>::resize(std::size_t slots) {
     throw std::length_error("CalendarQueue::resize: " + std::to_string(slots) + " slots, and it can have at most " +
                             std::to_string(most_slots));
   }
+  if (slots == 0) return forget_all();
   for (std::size_t slot = slots; slot < records_.size(); ++slot) {
     if (contains(static_cast<Slot>(slot))) drop(static_cast<Slot>(slot));
   }
   records_.resize(slots, none);
+}
+
+/// Gives the memory back, and compares nothing: ranks may be gone with what they are ranks of.
+template <QueueRank Rank>
+void CalendarQueue<Rank>::forget_all() {
+  const std::uint64_t operations = operations_;
+  *this = CalendarQueue(rank_);
+  operations_ = operations;
 }
 
 /// Not inlined, since set() rarely needs it.
@@ -181,8 +201,7 @@ template <QueueRank Rank>
   const auto record = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   slots_.resize(nodes_.size());
-  if constexpr (has_ranks) ranks_.resize(nodes_.size());
-  present_.reserve(nodes_.capacity());  // grows with it, not by one record at a time
+  if constexpr (keeps_ranks) ranks_.resize(nodes_.size());
   const std::size_t days = std::bit_ceil(std::max<std::size_t>(days_per_event * nodes_.size(), 64));
   if (days + 1 <= days_.size()) return record;
   const bool used = !days_.empty();
@@ -211,7 +230,7 @@ inline void CalendarQueue<Rank>::set(Slot slot, double time) {
   }
   ++operations_;
   nodes_[record].time = time;
-  if constexpr (has_ranks) ranks_[record] = rank_(slot);
+  if constexpr (keeps_ranks) ranks_[record] = rank_(slot);
   insert(record);
 }
 

@@ -36,6 +36,13 @@ template <class R>
 concept QueueRank = std::copyable<R> && std::totally_ordered<std::invoke_result_t<const R&, Slot>> &&
     std::is_trivially_copyable_v<std::invoke_result_t<const R&, Slot>>;
 
+/// Of a slot that has an event the rank never changes: declared by a member `lasts`. A queue may read it whenever it is
+/// needed, in place of keeping it.
+template <class R>
+concept LastingRank = QueueRank<R> && requires {
+  requires R::lasts;
+};
+
 template <QueueRank R>
 using RankOf = std::invoke_result_t<const R&, Slot>;
 
@@ -47,8 +54,8 @@ using RankOf = std::invoke_result_t<const R&, Slot>;
 ///  2. Map. After set(s, t), contains(s) and time(s) == t, whether s was there before or not; nothing else changes.
 ///     After clear(s), which may be called for an empty slot too, not contains(s) and time(s) is +infinity.
 ///  3. set(s, +infinity) is clear(s). Any other time is finite: a NaN or -infinity breaks the precondition (asserted).
-///  4. Rank. rank(s) is read by set(s, t) and kept: a slot whose rank changes takes its place when it is set again,
-///     and the queue is in order at all times, also while ranks are being changed.
+///  4. Rank. rank(s) is read by set(s, t) and kept, if it is no LastingRank: a slot whose rank changes takes its place
+///     when it is set again, and the queue is in order at all times, also while ranks are being changed.
 ///  5. No clock. set may give a time before earlier tops; the order holds all the same.
 ///  6. pop() is clear(top().slot). top() and pop() need a queue that is not empty. Though const, top() may rearrange
 ///     the queue's memory: threads that share a queue must take turns even to read.

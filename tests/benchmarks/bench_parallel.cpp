@@ -3,6 +3,8 @@
 //
 //     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
 //
+// plot_parallel.gp draws it.
+//
 // The bodies (elastic_gas.hpp) run until each has had some contacts; of bricks an eighth as many, for as long.
 // One world and the same scene in domains take turns; the best of the rounds counts. The number of contacts and a hash
 // of all of them must be the same.
@@ -132,11 +134,12 @@ void measure(std::ofstream& csv, const char* kind, std::size_t bodies, double pa
     const auto ratio = [](std::uint64_t a, std::uint64_t b) {
       return b ? static_cast<double>(a) / static_cast<double>(b) : 1;
     };
-    tell(csv, "%s,%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu\n", kind, bodies, packing,
+    tell(csv, "%s,%zu,%g,%zu,%zu,%llu,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%.3f,%llu,%llu,%.4g\n", kind, bodies, packing,
          way.threads, way.domains, static_cast<unsigned long long>(c.contacts), whole.entry_wall, whole.run_wall,
          way.time.entry_wall, way.time.run_wall, whole.run_wall / way.time.run_wall, way.time.run_cpu / whole.run_cpu,
          ratio(c.bodies_known, c.bodies_owned), ratio(c.events_computed, c.contacts + c.wall_contacts),
-         static_cast<unsigned long long>(c.windows), static_cast<unsigned long long>(c.windows_failed));
+         static_cast<unsigned long long>(c.windows), static_cast<unsigned long long>(c.windows_failed),
+         end / static_cast<double>(std::max<std::uint64_t>(c.windows, 1)));
   }
 }
 
@@ -147,7 +150,7 @@ int main(int argc, char** argv) {
     std::ofstream csv = kds::benchmarks::open_csv(argc > 1 ? argv[1] : ".", "parallel.csv");
     tell(csv,
          "kind,bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
-         "known_per_owned,computed_per_event,windows,failed\n");
+         "known_per_owned,computed_per_event,windows,failed,seconds_a_window\n");
     std::vector<std::size_t> sizes;
     for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
     if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};

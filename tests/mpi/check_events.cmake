@@ -50,7 +50,7 @@ function(refuses_part expected)
     execute_process(COMMAND ${with} ${refused} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET
       ERROR_VARIABLE text)
     string(FIND "${text}" "${name}: ${expected}" place)
-    string(REGEX MATCHALL "run[.]state[^\n]*" lines "${text}")
+    string(REGEX MATCHALL "(^|\n)run[.]state[^\n]*" lines "${text}")  # which begin with the place, whoever found it
     list(LENGTH lines count)
     if(NOT ended EQUAL 2 OR place EQUAL -1 OR NOT count EQUAL 1)
       message(FATAL_ERROR "${with}: ended with ${ended}, and said:\n${text}\nnot once: ${name}: ${expected}")
@@ -68,6 +68,22 @@ file(COPY_FILE "${other}" "${last}")
 refuses_part("part of a checkpoint: ")
 file(RENAME "${FOLDER}/kept" "${last}")
 file(RENAME "${FOLDER}/parts.csv.unfinished" "${FOLDER}/parts.csv")
+
+# What ended runs have left is removed by a run that goes on, also if it makes no checkpoint.
+file(GLOB named "${FOLDER}/run.state.*")
+file(RENAME "${FOLDER}/parts.csv" "${FOLDER}/parts.csv.unfinished")
+foreach(turn IN ITEMS a b)
+  file(WRITE "${FOLDER}/run.state.${turn}.0.unfinished" "")
+  foreach(left IN ITEMS 5 1.unfinished 7.unfinished)
+    file(WRITE "${FOLDER}/run.state.${turn}.${left}" "KDSBODY1, and not whole")
+  endforeach()
+endforeach()
+run(${MPIRUN} 2 "${MPI_TOOL}" balls.json --until 4 --events parts.csv --checkpoint run.state --checkpoint-every 100
+  --resume --quiet)
+file(GLOB left "${FOLDER}/run.state.*")
+if(NOT left STREQUAL named)
+  message(FATAL_ERROR "a run that went on has left ${left}, not ${named}")
+endif()
 
 foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_TOOL}" "${TOOL}" "${TOOL};--domains;5")
   file(RENAME "${FOLDER}/parts.csv" "${FOLDER}/parts.csv.unfinished")

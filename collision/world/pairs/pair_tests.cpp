@@ -155,6 +155,12 @@ void Pairs<Motion>::estimate_balls(std::size_t first, std::size_t last) {
 
 template <class Motion>
 void Pairs<Motion>::estimate_dirty(std::size_t from) {
+  // When many bodies have entered, all pairs were to be tested; later it is some for each contact.
+  constexpr std::size_t many = 1 << 16, far_too_many = 64;
+  if (estimates_.capacity() > std::max(many, far_too_many * dirty_.size())) {
+    estimates_ = LargeVector<double>();
+    dirty_.shrink_to_fit();
+  }
   estimates_.resize(dirty_.size());
   const std::size_t count = dirty_.size() - from;
   in_parts(count, threads_for(count, options_.threads),

@@ -50,6 +50,8 @@ struct Pair {
 
 /// The order of pairs: by the keys of their bodies.
 struct PairRank {
+  static constexpr bool lasts = true;  ///< a pair that has an event is alive, and so are its bodies
+
   const LargeVector<Pair>* pairs;
   const BodyKeys* keys;
   PairKey operator()(std::uint32_t slot) const { return {keys->key((*pairs)[slot].a), keys->key((*pairs)[slot].b)}; }
@@ -220,7 +222,7 @@ class Pairs final : public PairListener {
  private:
   static constexpr Slot none = ~Slot{0};
   /// Room for pairs that a body gets with its first pair; if there are few bodies, for all.
-  static constexpr std::uint32_t first_pairs = 4;
+  static constexpr std::uint32_t first_pairs = 2;
   static constexpr std::uint32_t few_pairs = 8;
 
   /// A pair as one of its bodies sees it.

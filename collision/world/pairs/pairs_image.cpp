@@ -49,7 +49,9 @@ void Pairs<Motion>::become(const Image& image) {
 template <class Motion>
 void Pairs<Motion>::clear() {
   become({});
-  pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit(), of_ = {};
+  of_.clear(), estimates_.clear(), links_ = {};
+  pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit(), free_.shrink_to_fit();
+  of_.shrink_to_fit(), estimates_.shrink_to_fit();
 }
 
 template <class Motion>

@@ -106,7 +106,7 @@ void Transfer<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& pro
 }
 
 template <class Motion>
-std::vector<Timers::Image::One> Transfer<Motion>::note_passed(double t) {
+void Transfer<Motion>::note_passed(double t) {
   for (const BodySlot slot : parts_.bodies.take_waiting(parts_.bodies.waits())) parts_.bodies[slot].entered = true;
   while (parts_.scripts.next_time() <= t) {
     for (const auto& [slot, motion] : parts_.scripts.take_next()) {
@@ -115,12 +115,7 @@ std::vector<Timers::Image::One> Transfer<Motion>::note_passed(double t) {
       for (const BodySlot sensor : parts_.bodies.attachments().sensors(slot)) parts_.bodies[sensor].entered = true;
     }
   }
-  std::vector<Timers::Image::One> rung;
-  while (parts_.timers.next_time() <= t) {
-    const double time = parts_.timers.next_time();
-    rung.push_back({time, parts_.timers.take_next()});
-  }
-  return rung;
+  while (parts_.timers.next_time() <= t) parts_.timers.take_next();
 }
 
 template <class Motion>

@@ -57,8 +57,8 @@ class Transfer {
   void note_meeting(BodySlot slot) { parts_.resting.note_meeting(slot); }
   /// Whether it has met a body that is not fixed.
   bool has_met(BodySlot slot) const { return parts_.resting.has_met(slot); }
-  /// Other worlds have run to t: bodies have entered, pieces of scripts have begun. Returns the timers that have rung.
-  std::vector<Timers::Image::One> note_passed(double t);
+  /// Other worlds have run to t: bodies have entered, pieces of scripts have begun, timers have rung.
+  void note_passed(double t);
   /// Forgets all but the bodies, until go_on().
   void set_aside();
   /// Goes on at t with the bodies as they are then.

@@ -33,19 +33,24 @@ struct WholeLog final : BasicWorldListener<Motion> {
   using W = BasicWorld<Motion>;
 
   std::vector<Event> events;
+  std::function<void(W&)> then;
 
-  void contact(W&, const PairEvent& e) override { events.push_back({Kind::contact, e.a, e.b, e.contact}); }
-  void separation(W&, const PairEvent& e) override { events.push_back({Kind::separation, e.a, e.b, e.contact}); }
-  void overlap(W&, const PairEvent& e) override { events.push_back({Kind::overlap, e.a, e.b, e.contact}); }
-  void wall(W&, const WallEvent& e) override {
-    events.push_back({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+  void note(W& world, const Event& event) {
+    events.push_back(event);
+    if (then) then(world);
   }
-  void rebound_suppressed(W&, const PairEvent& e) override {
-    events.push_back({Kind::rebound_suppressed, e.a, e.b, e.contact});
+  void contact(W& w, const PairEvent& e) override { note(w, {Kind::contact, e.a, e.b, e.contact}); }
+  void separation(W& w, const PairEvent& e) override { note(w, {Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(W& w, const PairEvent& e) override { note(w, {Kind::overlap, e.a, e.b, e.contact}); }
+  void wall(W& w, const WallEvent& e) override {
+    note(w, {Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
   }
-  void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
-  void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
-  void timer(W& world, TimerId timer) override { events.push_back({Kind::timer, timer, 0, {.time = world.now()}}); }
+  void rebound_suppressed(W& w, const PairEvent& e) override {
+    note(w, {Kind::rebound_suppressed, e.a, e.b, e.contact});
+  }
+  void rests(W& w, const PairEvent& e) override { note(w, {Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(W& w, const PairEvent& e) override { note(w, {Kind::wakes, e.a, e.b, e.contact}); }
+  void timer(W& w, TimerId timer) override { note(w, {Kind::timer, timer, 0, {.time = w.now()}}); }
 };
 
 /// The first event in which two logs differ, or the length of both.

@@ -241,6 +241,57 @@ TEMPLATE_TEST_CASE("ranks that change between settings leave the queue in order"
   drain(queue, model);
 }
 
+namespace {
+
+/// The same of slots whose rank changes only while they have no event. Counts how often it is asked for.
+struct SteadyRank : TableRank {
+  static constexpr bool lasts = true;
+  std::shared_ptr<std::size_t> asked = std::make_shared<std::size_t>(0);
+  std::uint64_t operator()(Slot slot) const { return ++*asked, TableRank::operator()(slot); }
+};
+static_assert(kds::LastingRank<SteadyRank> && !kds::LastingRank<TableRank> && !kds::LastingRank<kds::SlotRank>);
+
+}  // namespace
+
+TEMPLATE_TEST_CASE("ranks that last, and change only where there is no event", "[event_queue]",
+                   kds::PairingQueue<SteadyRank>, kds::DaryQueue<SteadyRank>, kds::CalendarQueue<SteadyRank>) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    std::mt19937_64 random(seed);
+    const std::size_t slots = 200;
+    SteadyRank rank;
+    rank.table->resize(slots);
+    TestType queue(rank);
+    Model<TableRank> model(rank);
+    queue.resize(slots);
+    model.resize(slots);
+    for (int step = 0; step < 10000; ++step) {
+      const auto slot = static_cast<Slot>(random() % slots);
+      if (!queue.contains(slot)) (*rank.table)[slot] = random() % 5;
+      const double time =
+          random() % 5 == 0 ? infinity : static_cast<double>(step / 500 + static_cast<int>(random() % 3));
+      queue.set(slot, time);
+      model.set(slot, time);
+      if (step % 2 == 0 && !model.empty()) {
+        require_equal(queue, model);
+        queue.pop();
+        model.pop();
+      }
+    }
+    // The ranks may be gone when all is dropped.
+    REQUIRE(queue.size() > 1);
+    const std::size_t asked = *rank.asked;
+    queue.resize(0);
+    CHECK(*rank.asked == asked);
+    CHECK(queue.empty());
+    queue.resize(slots);
+    model = Model<TableRank>(rank);
+    model.resize(slots);
+    for (Slot slot = 0; slot < slots; ++slot) queue.set(slot, slot % 7), model.set(slot, slot % 7);
+    drain(queue, model);
+  }
+}
+
 TEMPLATE_TEST_CASE("resizing keeps what is below and drops what is above", "[event_queue]", kds::PairingQueue<>,
                    kds::DaryQueue<>, kds::CalendarQueue<>) {
   const std::uint64_t seed = 7;
