@@ -5,6 +5,7 @@
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
@@ -14,15 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <variant>
 
 namespace kds::collision {
-
-/// The script of a mesh that bends; null for other shapes.
-inline const MeshScript* script_of(const PlacedShape& shape) {
-  const auto* const bending = std::get_if<BendingMesh>(&shape.shape);
-  return bending ? bending->script.get() : nullptr;
-}
 
 /// The surface of one body. Keeps a reference to the body.
 ///
@@ -35,7 +29,7 @@ class PieceSurface {
   /// Of the paths of its vertices.
   static constexpr int degree = turns<Motion> ? 2 : Motion::degree;
 
-  explicit PieceSurface(const Body& body) : body_(body), script_(script_of(body.shape)) {
+  explicit PieceSurface(const Body& body) : body_(body), script_(script_of(body.shape.shape)) {
     if (script_) {
       bent_.emplace(script_->tree());
     } else if constexpr (turns<Motion>) {
