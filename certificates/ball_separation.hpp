@@ -248,9 +248,9 @@ bool BallSeparation<PathDegree>::plane_between(double from, double to) const {
   const Eigen::Vector3d n = c[0] + nearest * c[1];
   double bend = 0;
   for (std::size_t i = PathDegree; i >= 2; --i) bend = (bend + c[i].cwiseAbs().sum()) * half;
-  const double reach = radius_a + radius_b + bend * half + rounding * (terms + radius_a + radius_b);
+  const double least = radius_a + radius_b + bend * half + rounding * (terms + radius_a + radius_b);
   const double along = n.dot(c[0]) - std::abs(n.dot(c[1])) * half;
-  return along > 0 && along > n.norm() * reach && along < never;
+  return along > 0 && along > n.norm() * least && along < never;
 }
 
 }  // namespace kds::certificates

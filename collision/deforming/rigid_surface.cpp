@@ -71,7 +71,7 @@ RigidSurface<Degree>::RigidSurface(const PlacedShape& shape)
   const auto box = rounded_box_of(shape.shape);
   if (box) surface_.set_radius(box->radius);
   if (box ? box->dimension() == 3 : polytope_of(shape.shape) != nullptr) surface_.set_solid();
-  for (const Vector3d& offset : offsets_) reach_ = std::max(reach_, norm(offset));
+  for (const Vector3d& offset : offsets_) vertex_radius_ = std::max(vertex_radius_, norm(offset));
 }
 
 template <int Degree>
@@ -111,12 +111,12 @@ void RigidSurface<Degree>::move(const certificates::RigidMotion<PathDegree>& mot
     for (std::size_t i = 0; i < 3; ++i) farthest = std::max(farthest, points[i][k].cwiseAbs().maxCoeff());
   }
   const double angle = norm(motion.angular_velocity) * (t1 - t0);
-  const double turned = 2.0 / 81 * angle * angle * angle * reach_;
+  const double turned = 2.0 / 81 * angle * angle * angle * vertex_radius_;
   // A rotation errs by its bound times the sum of the coordinates, at most twice the length; the middle point has that
   // of the first one, once more times half of the angle. Sums are rounded, and so is what is said of the angle.
-  const double rotation = std::max(begin.error(), end.error()) * 2 * reach_;
+  const double rotation = std::max(begin.error(), end.error()) * 2 * vertex_radius_;
   surface_.set_uncertainty(path.error +
-                           (turned + (1 + angle) * (rotation + 0x1p-50 * (farthest + reach_))) * (1 + 0x1p-40));
+                           (turned + (1 + angle) * (rotation + 0x1p-50 * (farthest + vertex_radius_))) * (1 + 0x1p-40));
   surface_.refit(t0, t1);
 }
 

@@ -43,9 +43,9 @@ class PieceSurface {
   /// turn.
   double longest_piece(double error) const {
     if constexpr (turns<Motion>) {
-      if (script_ || !(rigid_->reach() > 0)) return never;
+      if (script_ || !(rigid_->vertex_radius() > 0)) return never;
       const double rate = norm(body_.motion.angular_velocity);
-      return rate > 0 ? std::cbrt(81.0 / 2 * error / rigid_->reach()) / rate : never;
+      return rate > 0 ? std::cbrt(81.0 / 2 * error / rigid_->vertex_radius()) / rate : never;
     }
     return never;
   }

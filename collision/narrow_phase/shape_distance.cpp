@@ -29,13 +29,13 @@ class Convex {
 
   explicit Convex(Corners corners, double radius = 0) : corners_(std::move(corners)), radius_(radius) {
     for (const Vector3d& corner : corners_) middle_ += corner / static_cast<double>(corners_.size());
-    for (const Vector3d& corner : corners_) reach_ = std::max(reach_, norm(corner - middle_));
+    for (const Vector3d& corner : corners_) corner_distance_ = std::max(corner_distance_, norm(corner - middle_));
   }
 
   double radius() const { return radius_; }
   const Vector3d& middle() const { return middle_; }
   /// All of it is within this distance from the middle.
-  double reach() const { return reach_ + radius_; }
+  double bounding_radius() const { return corner_distance_ + radius_; }
 
   /// Of the corners.
   const Vector3d& farthest(const Vector3d& along) const {
@@ -51,7 +51,7 @@ class Convex {
   Corners corners_;
   double radius_;
   Vector3d middle_ = Vector3d::Zero();
-  double reach_ = 0;
+  double corner_distance_ = 0;
 };
 
 /// A point of the difference of two sets.
@@ -197,7 +197,7 @@ class Nearest {
         continue;
       }
       const std::size_t known = waiting.size();
-      if (leaf_b || (!leaf_a && pair.a.reach() > pair.b.reach())) {
+      if (leaf_b || (!leaf_a && pair.a.bounding_radius() > pair.b.bounding_radius())) {
         const std::uint32_t first = a.first_child(pair.of_a);
         for (std::uint32_t child = first; child < first + 2; ++child) {
           add(waiting, {a.volume(child), pair.b, child, pair.of_b, pair.way});
@@ -225,7 +225,7 @@ class Nearest {
 
   void add(std::vector<Pair>& waiting, Pair pair) const {
     const double radii = pair.a.radius() + pair.b.radius();
-    if (too_far(norm(pair.b.middle() - pair.a.middle()) - pair.a.reach() - pair.b.reach())) return;
+    if (too_far(norm(pair.b.middle() - pair.a.middle()) - pair.a.bounding_radius() - pair.b.bounding_radius())) return;
     if (const double square = squared_norm(pair.way); square > 0) {  // a fifth faster than without
       const double apart = dot(pair.b.farthest(Vector3d(-pair.way)) - pair.a.farthest(pair.way), pair.way);
       if (too_far(apart / std::sqrt(square) - radii)) return;
