@@ -73,7 +73,7 @@ constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   add_rows_of_all_motions(table);
   table.add_among(solids, TurningContact<Degree>{});
   table.template add<HalfSpace>(solids + KindList<MeshShape>{}, TurningContact<Degree>{});
-  table.template add<MeshShape>(solids + KindList<MeshShape>{}, TurningMeshContact<Degree>{});
+  table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
   return table;
 }
 
