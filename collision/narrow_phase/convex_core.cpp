@@ -21,10 +21,12 @@ std::array<Vector3d, 8> box_corners(const Vector3d& half) {
 
 /// Of a point, a segment or a box, which has so many dimensions.
 const HullStructure& structure_of_box(int dimension) {
-  static const HullStructure point{{0}, {}, {}};
-  static const HullStructure segment{{0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}};
-  static const HullStructure box = structure_of_hull(box_corners(Vector3d::Ones()));
-  return dimension == 0 ? point : dimension == 1 ? segment : box;
+  static const HullStructure structures[]{
+      {{0}, {}, {}},
+      {{0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}},
+      structure_of_hull(box_corners(Vector3d::Ones())),
+  };
+  return structures[dimension == 3 ? 2 : dimension];
 }
 
 }  // namespace

@@ -10,7 +10,10 @@
 #include <cstddef>
 #include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace kds::io {
 namespace {
@@ -129,16 +132,16 @@ std::span<const ShapeReader> shape_readers() {
 
 /// The reader of the only kind of which a node has the key.
 const ShapeReader& reader_of(const JsonNode& node) {
-  const ShapeReader* found = nullptr;
-  std::size_t kinds = 0;
+  const auto readers = shape_readers();
+  const auto has = [&](const ShapeReader& each) { return node.has(each.key); };
+  const auto found = std::ranges::find_if(readers, has);
+  if (found != readers.end() && std::none_of(found + 1, readers.end(), has)) return *found;
   std::string names;
-  for (const ShapeReader& each : shape_readers()) {
-    if (node.has(each.key)) found = &each, ++kinds;
-    names += &each == &shape_readers().front() ? "" : &each == &shape_readers().back() ? " and " : ", ";
+  for (const ShapeReader& each : readers) {
+    names += &each == &readers.front() ? "" : &each == &readers.back() ? " and " : ", ";
     names += '"' + std::string(each.key) + '"';
   }
-  if (kinds != 1) node.fail("must have exactly one of " + names);
-  return *found;
+  node.fail("must have exactly one of " + names);
 }
 
 }  // namespace
@@ -164,10 +167,12 @@ std::string mesh_size_problem(const kds::collision::MeshShape& shape, bool scale
 }
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  for (const auto& [key, child] : node.members()) {
-    const auto has_key = [&name = key](const ShapeReader& each) { return name == each.key; };
-    if (key != "scale" && std::ranges::none_of(shape_readers(), has_key)) child.fail("unknown key");
-  }
+  static const std::vector<std::string_view> keys = [] {
+    std::vector<std::string_view> all{"scale"};
+    for (const ShapeReader& each : shape_readers()) all.push_back(each.key);
+    return all;
+  }();
+  node.object(keys);
   const ShapeReader& reader = reader_of(node);
   if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
   return reader.read(node, meshes);

@@ -37,17 +37,15 @@ double radius(const PlacedShape& shape) { return ball_radius(shape.shape); }
 const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(shape.shape).half_extents; }
 /// The box that a shape is, in the coordinates of its body.
 std::optional<AlignedBox> box_of(const PlacedShape& shape) {
-  if (const Polytope* const hull = polytope_of(shape.shape)) return hull->box();
-  const auto box = rounded_box_of(shape.shape);
-  if (!box || box->radius > 0) return std::nullopt;
-  return AlignedBox{-box->half_extents, box->half_extents};
+  if (const auto* const box = std::get_if<Box>(&shape.shape)) return AlignedBox{-box->half_extents, box->half_extents};
+  const Polytope* const hull = polytope_of(shape.shape);
+  return hull ? hull->box() : std::nullopt;
 }
 bool is_ball(const PlacedShape& shape) { return ball_radius(shape.shape) > 0; }
-/// A capsule, or whatever else is grown by a radius.
-bool is_rounded(const PlacedShape& shape) { return rounding_radius(shape.shape) > 0 && !is_ball(shape); }
+bool is_box(const PlacedShape& shape) { return std::holds_alternative<Box>(shape.shape); }
 
 /// Calls ask(pair) with what WaysApart takes. Precondition: turning counts for the pair; a half-space comes first, or
-/// else a hull, or else what is rounded.
+/// else a hull, or else a capsule.
 template <int Degree, class Ask>
 auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   if (unbounded(a.shape.shape)) {
@@ -60,11 +58,11 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   }
   const auto box_a = box_of(a.shape), box_b = box_of(b.shape);
   if (box_a && box_b) return ask(TurningBoxes<Degree>(a.motion, *box_a, b.motion, *box_b));
-  if (polytope_of(a.shape.shape) || is_rounded(a.shape)) {
+  if (!is_ball(a.shape) && !is_box(a.shape)) {
     const ConvexCore core(a.shape.shape);
     if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
     const ConvexCore other(b.shape.shape);
-    if (is_rounded(a.shape) || is_rounded(b.shape)) {
+    if (core.radius() > 0 || other.radius() > 0) {
       return ask(TurningRoundedPolytopes<Degree>(a.motion, core, b.motion, other));
     }
     return ask(TurningPolytopes<Degree>(a.motion, core, b.motion, other));
