@@ -156,7 +156,7 @@ Convex rounded(const PlacedShape& shape, const Vector3d& centre) {
 
 /// Precondition: no half-space.
 void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::vector<Part>& parts) {
-  const auto place_of = [&](const Vector3d& x) { return centre + placed_vertex(shape.rotation, 1, x); };
+  const auto place_of = [&](const Vector3d& x) -> Vector3d { return centre + placed_vertex(shape.rotation, 1, x); };
   const auto of_box = [&](const RoundedBox&) { parts.emplace_back(rounded(shape, centre)); };
   const auto of_hull = [&](const Polytope& polytope) {
     Convex::Corners corners;
