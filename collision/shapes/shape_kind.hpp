@@ -34,7 +34,7 @@ inline void grow(PlacedShape& placed, double margin) {
 /// - `extent(shape, placed, direction)`: see extent() in shape.hpp;
 /// - `support(shape, placed, direction)`: see supporting_feature() in support.hpp; of convex solids;
 /// - `rounded_box(shape)`, see rounded_box.hpp; `moments(shape, mass)`, of inertia, about the axes through the centre;
-///   `outline(shape, pen)`, which draws with pen.line() and pen.arc() as drawing/outline.cpp has them: of rounded boxes;
+///   `outline(shape, pen)`, which draws with the pen.line() and pen.arc() of drawing/outline.cpp: of rounded boxes;
 /// - `measures(shape)`: see measures() in shape.hpp;
 /// - `archive(archive, shape, placed, meshes)`: for snapshots, the numbers of the shape, and what is not a function of
 ///   them and of the rotation to the last bit. A mesh is named by its number among the meshes of the snapshot.
