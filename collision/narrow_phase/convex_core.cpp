@@ -19,27 +19,40 @@ std::array<Vector3d, 8> box_corners(const Vector3d& half) {
   return corners;
 }
 
-/// Of a point, a segment or a box, which has so many dimensions.
-const HullStructure& structure_of_box(int dimension) {
-  static const HullStructure structures[]{
-      {{0}, {}, {}},
-      {{0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}},
-      structure_of_hull(box_corners(Vector3d::Ones())),
-  };
-  return structures[dimension == 3 ? 2 : dimension];
+const HullStructure& structure_of_box() {
+  static const HullStructure structure = structure_of_hull(box_corners(Vector3d::Ones()));
+  return structure;
+}
+const HullStructure& structure_of_segment() {
+  static const HullStructure structure{{0, 1}, {{{0, 1}, {HullStructure::no_face, HullStructure::no_face}}}, {}};
+  return structure;
+}
+const HullStructure& structure_of_point() {
+  static const HullStructure structure{{0}, {}, {}};
+  return structure;
 }
 
 }  // namespace
 
 ConvexCore::ConvexCore(const Shape& shape) {
   const auto of_box = [&](const RoundedBox& box) {
-    const int dimension = box.dimension();
     const Vector3d& half = box.half_extents;
-    if (dimension == 3) own_ = box_corners(half);
-    if (dimension == 1) own_[0] = {0, 0, -half[2]}, own_[1] = {0, 0, half[2]};
-    if (dimension == 0) own_[0] = Vector3d::Zero();
-    size_ = std::size_t{1} << dimension;
-    structure_ = &structure_of_box(dimension);
+    switch (box.dimension()) {
+      case 3:
+        own_ = box_corners(half);
+        size_ = 8;
+        structure_ = &structure_of_box();
+        break;
+      case 1:
+        own_[0] = {0, 0, -half[2]}, own_[1] = {0, 0, half[2]};
+        size_ = 2;
+        structure_ = &structure_of_segment();
+        break;
+      default:
+        own_[0] = Vector3d::Zero();
+        size_ = 1;
+        structure_ = &structure_of_point();
+    }
     radius_ = box.radius;
   };
   const auto of_hull = [&](const Polytope& polytope) {
