@@ -15,8 +15,9 @@
 namespace kds::certificates {
 
 /// axis . (b(t) - a(t)) as a polynomial in (t - epoch): what relative_motion<Ball<double>> and the products with the
-/// axis give, at a third of the cost, with one error bound for each coefficient instead of one for each operation. A
-/// coefficient that is zero whatever the roundings has the radius 0.
+/// axis give, with one error bound for each coefficient instead of one for each operation, in 0.6 of the time for
+/// parabolas, 0.9 for lines (docs/benchmarks.md, "Relative motion"). A coefficient that is zero whatever the roundings
+/// has the radius 0.
 ///
 /// Error bound, with u = 2^-53. The elapsed times are known to u; a coordinate of a path is a sum of at most three
 /// products, known to 6 u of the sum of their magnitudes, m; the difference of two adds u. The product with the axis

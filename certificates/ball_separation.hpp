@@ -172,7 +172,9 @@ double BallSeparation<PathDegree>::first_approach(double now, double horizon) co
 
 /// Along the unit vector n from centre to centre the gap is a polynomial c0 + c1 s + c2 s^2, and no greater than what
 /// is between the balls. Each coefficient is reduced by `rounding` times the sum of its terms' magnitudes, which is
-/// eight times the rounding error in computing it; the length of n, too, differs from 1 by no more than that.
+/// eight times the rounding error in computing it; the length of n, too, differs from 1 by no more than that. By
+/// relative_motion(), with a bound for each number, it takes 1.5 times as long, for parabolas 2.7 times
+/// (docs/benchmarks.md, "Relative motion").
 template <int PathDegree>
 double BallSeparation<PathDegree>::apart_until(double now) const {
   if constexpr (PathDegree > 2) return now;
@@ -216,7 +218,8 @@ double BallSeparation<PathDegree>::apart_until(double now) const {
 ///
 /// Rounding: let M be the sum over both paths, and over their coefficients, of |ci| (|elapsed| + half)^i, a bound on
 /// all terms. Coefficients about the middle, their products with half^i and with n err by some 6 Degree roundings of
-/// |n| M in all, and the sum of the radii by one of its own: `rounding` is eight times that for degrees to 10.
+/// |n| M in all, and the sum of the radii by one of its own: `rounding` is eight times that for degrees to 10. By
+/// relative_motion() it takes twice as long (docs/benchmarks.md, "Relative motion").
 template <int PathDegree>
 bool BallSeparation<PathDegree>::plane_between(double from, double to) const {
   constexpr double rounding = 0x1p-44;
@@ -248,9 +251,9 @@ bool BallSeparation<PathDegree>::plane_between(double from, double to) const {
   const Eigen::Vector3d n = c[0] + nearest * c[1];
   double bend = 0;
   for (std::size_t i = PathDegree; i >= 2; --i) bend = (bend + c[i].cwiseAbs().sum()) * half;
-  const double reach = radius_a + radius_b + bend * half + rounding * (terms + radius_a + radius_b);
+  const double least = radius_a + radius_b + bend * half + rounding * (terms + radius_a + radius_b);
   const double along = n.dot(c[0]) - std::abs(n.dot(c[1])) * half;
-  return along > 0 && along > n.norm() * reach && along < never;
+  return along > 0 && along > n.norm() * least && along < never;
 }
 
 }  // namespace kds::certificates

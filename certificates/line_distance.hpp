@@ -13,7 +13,8 @@ namespace kds::certificates {
 /// |b(t) - a(t)|^2 - (radius_a + radius_b)^2, with a bound on its error; a NaN or an infinite bound where numbers are
 /// out of range.
 ///
-/// In double-double, without a bound for each step: two axes at a time, and one bound for all. With u = 2^-53, m the
+/// In double-double, without a bound for each step: two axes at a time, and one bound for all, in a third of the time
+/// (docs/benchmarks.md, "Relative motion"). With u = 2^-53, m the
 /// sum of magnitudes of an axis (positions and what is moved by), M that of all axes, R the sum of the radii. Elapsed
 /// times, sums of two and products of two doubles are exact. The low part of a position is a sum of two errors and a
 /// product, known to 6 u^2 m; that of the difference, at most 4 u m, to 13 u^2 m. The square leaves out that of the low

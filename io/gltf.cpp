@@ -2,6 +2,7 @@
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "io/base64.hpp"
 #include "io/pictures/body_surface.hpp"
 #include "io/pictures/compound_surface.hpp"
@@ -17,7 +18,6 @@
 #include <map>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::io {
@@ -178,9 +178,9 @@ class Exporter {
     if (places.times.size() > 1) channel(node, "translation", places, 3, "LINEAR");
     if (turns.times.size() > 1) channel(node, "rotation", turns, 4, "LINEAR");
     if (sizes.times.size() > 1) channel(node, "scale", sizes, 3, "STEP");
-    const auto* const bending = std::get_if<kds::collision::BendingMesh>(&body.shape);
-    if (!bending || bending->script->keyframes().size() < 2) return;
-    const auto keyframes = bending->script->keyframes();
+    const auto* const script = script_of(body.shape);
+    if (!script || script->keyframes().size() < 2) return;
+    const auto keyframes = script->keyframes();
     Keys weights;
     std::vector<double> one(keyframes.size() - 1);
     for (std::size_t k = 0; k < keyframes.size(); ++k) {
@@ -201,9 +201,7 @@ class Exporter {
   /// One mesh for all bodies of a shape and colour.
   std::size_t mesh_of_body(const SceneBody& body) {
     const std::size_t colour = body.sensor ? of_sensors : body.fixed ? of_fixed : body_count_++ % colours;
-    if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
-      return add_bending(*bending->script, material(colour));
-    }
+    if (const auto* script = script_of(body.shape)) return add_bending(*script, material(colour));
     const auto [known, is_new] = meshes_.try_emplace(std::pair(surface_key(body.shape), colour), 0);
     if (is_new) {
       known->second = add_mesh(surface_of(body.shape), material(colour), json::array());

@@ -3,7 +3,7 @@
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "io/number_text.hpp"
 #include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
@@ -16,7 +16,6 @@
 #include <map>
 #include <memory>
 #include <string_view>
-#include <variant>
 #include <vector>
 
 namespace kds::io {
@@ -138,12 +137,6 @@ std::vector<RecordedPiece> visible(const std::vector<RecordedPiece>& pieces, dou
     result.push_back(piece);
   }
   return result;
-}
-
-/// The triangles of a shape that has some: a mesh, or the surface of a hull.
-std::shared_ptr<const kds::collision::Mesh> triangles_of(const kds::collision::Shape& shape) {
-  const auto* const hull = std::get_if<kds::collision::ConvexHull>(&shape);
-  return hull ? hull->polytope->surface() : mesh_of(shape);
 }
 
 void append_shape(std::string& text, const SceneBody& body,
@@ -283,9 +276,7 @@ std::string Record::to_json(const Scene& scene, const std::string& title) const 
     if (i > 0) text += ",\n";
     text += "{\"name\":" + quoted(body.name) + ",\"shape\":";
     append_shape(text, body, mesh_numbers);
-    if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
-      append_frames(text, *bending->script, scene.begin_time);
-    }
+    if (const auto* script = script_of(body.shape)) append_frames(text, *script, scene.begin_time);
     const Eigen::Quaterniond& q = body.orientation;
     text += ",\"turn\":";
     append_list(text, {q.x(), q.y(), q.z(), q.w()});

@@ -1,6 +1,7 @@
 #include "io/vtk.hpp"
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "io/base64.hpp"
 #include "io/number_text.hpp"
 #include "io/pictures/body_surface.hpp"
@@ -19,7 +20,6 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
-#include <variant>
 
 namespace kds::io {
 namespace {
@@ -108,10 +108,10 @@ VtkFrames::VtkFrames(const Scene& scene, const Record& record) : scene_(with_pla
   std::map<SurfaceKey, std::shared_ptr<const Surface>> known;
   for (std::uint32_t place = 0; place < scene_.bodies.size(); ++place) {
     const auto& shape = scene_.bodies[place].shape;
-    const auto* const bending = std::get_if<kds::collision::BendingMesh>(&shape);
+    const auto* const script = script_of(shape);
     Body body{nullptr, surface_scale(shape), record.drawn(scene_, place), record.end(place)};
-    if (bending) {
-      body.surface = std::make_shared<const Surface>(surface_of(*bending->script));
+    if (script) {
+      body.surface = std::make_shared<const Surface>(surface_of(*script));
     } else {
       auto& surface = known[surface_key(shape)];
       if (!surface) surface = std::make_shared<const Surface>(surface_of(shape, coarse));
@@ -144,11 +144,11 @@ std::string VtkFrames::at(double t) const {
     const Eigen::Matrix3d rotation = q.toRotationMatrix();
     const Vector3d centre = piece.path.position(t), velocity = piece.path.velocity(t);
     const Surface& surface = *body.surface;
-    const auto* const bending = std::get_if<kds::collision::BendingMesh>(&scene_.bodies[place].shape);
+    const auto* const script = script_of(scene_.bodies[place].shape);
     const auto first = static_cast<std::int32_t>(places.size() / 3);
     for (std::size_t v = 0; 3 * v < surface.places.size(); ++v) {
       const float* const unit = &surface.places[3 * v];
-      const Vector3d own = bending ? bending->script->position(v, t) : Vector3d(unit[0], unit[1], unit[2]);
+      const Vector3d own = script ? script->position(v, t) : Vector3d(unit[0], unit[1], unit[2]);
       append_floats(places, centre + rotation * own.cwiseProduct(body.scale));
     }
     for (const std::uint32_t corner : surface.triangles) corners.push_back(first + static_cast<std::int32_t>(corner));

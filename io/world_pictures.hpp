@@ -5,6 +5,7 @@
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "io/gltf.hpp"
 #include "io/replay.hpp"
 #include "io/vtk.hpp"
@@ -16,7 +17,6 @@
 #include <string>
 #include <unordered_map>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::io {
@@ -134,8 +134,8 @@ class WorldPictures {
     SceneBody body = Recorder::describe(world, id);
     body.name = "body " + std::to_string(id);
     body.motion = {kds::collision::motion_as<MotionPiece>(world.motion(id))};
-    if (const auto* bending = std::get_if<kds::collision::BendingMesh>(&body.shape)) {
-      const auto& form = bending->script->form();
+    if (const auto* script = script_of(body.shape)) {
+      const auto& form = script->form();
       body.bent = std::make_shared<const kds::collision::Mesh>(form.positions, form.triangles);
       scene_.meshes.push_back({body.name, "", body.bent});
     }

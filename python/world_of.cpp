@@ -3,6 +3,7 @@
 #include "collision/queries/future.hpp"
 #include "collision/queries/near_pairs.hpp"
 #include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/world.hpp"
 #include "collision/world/edits/checked_pieces.hpp"
 #include "io/scene_world.hpp"
@@ -137,7 +138,7 @@ class WorldOf final : public AnyWorld {
     if (!bends(shape)) {
       throw std::invalid_argument("vertices: body " + std::to_string(id) + " is no mesh that bends");
     }
-    const MeshScript& script = *std::get<BendingMesh>(shape).script;
+    const MeshScript& script = *script_of(shape);
     std::vector<Eigen::Vector3d> positions(script.vertices());
     for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = script.position(i, now());
     return positions;

@@ -103,13 +103,13 @@ class GrowingSegmentsRule {
     bool there = false, stop = false;
     bool knows_all = true;           ///< nothing is farther ahead than what is kept
     std::vector<Id> ahead{};         ///< whose tracks it comes to next, the next one last: or has stopped at
-    double reach = never;            ///< it comes to all of these up to this time; never if it knows all
+    double known_until = never;      ///< it comes to all of these up to this time; never if it knows all
     std::optional<Arrival> arrival;  ///< at the next
     double time = never;             ///< of stopping
 
     template <class Archive>
     void archive(Archive& archive) {
-      archive(there, stop, knows_all, ahead, reach, arrival, time);
+      archive(there, stop, knows_all, ahead, known_until, arrival, time);
     }
   };
   /// An arrival, and when: the first double that is not before it.
@@ -233,7 +233,8 @@ inline void GrowingSegmentsRule::go_on(Id id, const Next& from, Pen& repair) {
 /// Puts a new track among those that are ahead of an end.
 inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   End& end = ends_[id];
-  if (!end.knows_all && surely_later(repair[id], repair[other], repair.now(), end.reach)) return;  // of nearly all
+  if (!end.knows_all && surely_later(repair[id], repair[other], repair.now(), end.known_until))
+    return;  // of nearly all
   const std::optional<Arrival> arrival = arrival_at(repair[id], repair[other]);
   if (!arrival || !is_ahead(*arrival, repair.now())) return;
   const Next next(other, *arrival, repair.now());
@@ -250,7 +251,7 @@ inline void GrowingSegmentsRule::put_ahead(Id id, Id other, Pen& repair) {
   if (end.ahead.size() <= kept_ahead) return;
   end.ahead.erase(end.ahead.begin());
   end.knows_all = false;
-  end.reach = Next(end.ahead.front(), *arrival_at(repair[id], repair[end.ahead.front()]), repair.now()).time;
+  end.known_until = Next(end.ahead.front(), *arrival_at(repair[id], repair[end.ahead.front()]), repair.now()).time;
   put_into_tree(id, repair[id]);
 }
 

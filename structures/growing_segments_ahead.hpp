@@ -46,7 +46,7 @@ inline void GrowingSegmentsRule::put_into_tree(Id id, const Element& element) {
 }
 inline TrackBox GrowingSegmentsRule::box_of(Id id, const Element& element) const {
   const End& end = ends_[id];
-  const TrackBox box = TrackBox::of(element.path, end.reach);
+  const TrackBox box = TrackBox::of(element.path, end.known_until);
   return end.stop ? box.stopped_at(end.time) : box;
 }
 
@@ -63,13 +63,13 @@ inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repai
   double ahead = std::max(0.5 * enough_, std::nextafter(begin, never) - begin);
   for (bool enough = element.whole; !enough; ahead *= 3) {
     const double until = begin + ahead;
-    double reach = until;
+    double last = until;
     std::size_t seen = 0;
     found.clear();
     all = true;
     const auto look = [&](Id other) {
       ++seen;
-      if (reach < never && surely_later(element, repair[other], now, reach)) return;
+      if (last < never && surely_later(element, repair[other], now, last)) return;
       const std::optional<Arrival> arrival = arrival_at(element, repair[other]);
       if (!arrival || !may_stop(other, *arrival, repair.elements())) return;
       if (!after && !is_ahead(*arrival, repair.now())) return;
@@ -77,7 +77,7 @@ inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repai
       if (next.time <= until && (!after || is_before(*after, next))) found.push_back(next);
       if (found.size() < 4 * kept_ahead) return;
       keep_first(found);
-      reach = found.back().time;
+      last = found.back().time;
       all = false;
     };
     const TrackBox::Place place{way(element.path, begin, until), until};
@@ -89,7 +89,7 @@ inline void GrowingSegmentsRule::look_ahead(Id id, const Next* after, Pen& repai
   End& end = ends_[id];
   end.knows_all = all && found.size() <= kept_ahead;
   keep_first(found);
-  end.reach = end.knows_all ? never : found.back().time;
+  end.known_until = end.knows_all ? never : found.back().time;
   const std::size_t kept = found.size();
   end.ahead.clear();
   for (std::size_t i = kept; i-- > 0;) end.ahead.push_back(found[i].at);

@@ -61,7 +61,7 @@ class BoxSlant {
   };
   /// Twice the distance of the centres along an axis, and the greatest at which boxes overlap.
   struct Side {
-    double distance, reach;
+    double distance, greatest;
   };
   Side side(std::size_t d, double min, double minus_max) const;
   bool apart(std::size_t i, const Side& at_i, std::size_t j, const Side& at_j) const;
@@ -76,7 +76,7 @@ inline BoxSlant::Side BoxSlant::side(std::size_t d, double min, double minus_max
 
 inline bool BoxSlant::apart(std::size_t i, const Side& at_i, std::size_t j, const Side& at_j) const {
   return std::abs(along_[j].velocity * at_i.distance - along_[i].velocity * at_j.distance) >
-         along_[j].speed() * at_i.reach + along_[i].speed() * at_j.reach;
+         along_[j].speed() * at_i.greatest + along_[i].speed() * at_j.greatest;
 }
 
 inline bool BoxSlant::apart(const BoxBounds& other) const {

@@ -38,21 +38,21 @@ double rises_at(const std::array<double, Count>& gap) {
 
 }  // namespace detail
 
-/// Whether boxes that are widened by `reach` may overlap within the span; narrows it to when they may.
+/// Whether boxes that are widened by `widening` may overlap within the span; narrows it to when they may.
 ///
-/// Rounding: the distance of two sides is rounded once, by u of it, and u of the sum with the reach. `reach` has to be
-/// larger than what is meant by 2^-48 of it: then the sum is never below what is meant by more than a rounding of what
-/// it is itself, whatever of it cancels, so that signs are right or the boxes are said to overlap.
+/// Rounding: the distance of two sides is rounded once, by u of it, and u of the sum with the widening. `widening` has
+/// to be larger than what is meant by 2^-48 of it: then the sum is never below what is meant by more than a rounding of
+/// what it is itself, whatever of it cancels, so that signs are right or the boxes are said to overlap.
 template <int Degree>
-bool overlap_span(const ControlBox<Degree>& a, const ControlBox<Degree>& b, double reach, OverlapSpan& span) {
+bool overlap_span(const ControlBox<Degree>& a, const ControlBox<Degree>& b, double widening, OverlapSpan& span) {
   constexpr std::size_t count = std::size_t{Degree} + 1;
   std::array<std::array<double, count>, 6> gaps;
   bool cut = false;
   for (std::size_t d = 0; d < 3; ++d) {
     bool left = true, right = true;
     for (std::size_t i = 0; i < count; ++i) {
-      gaps[d][i] = (a.max[i][d] - b.min[i][d]) + reach;
-      gaps[d + 3][i] = (b.max[i][d] - a.min[i][d]) + reach;
+      gaps[d][i] = (a.max[i][d] - b.min[i][d]) + widening;
+      gaps[d + 3][i] = (b.max[i][d] - a.min[i][d]) + widening;
       left = left && gaps[d][i] < 0;
       right = right && gaps[d + 3][i] < 0;
       cut = cut || gaps[d][i] < 0 || gaps[d + 3][i] < 0;

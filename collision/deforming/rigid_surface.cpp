@@ -1,6 +1,7 @@
 #include "collision/deforming/rigid_surface.hpp"
 
 #include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -10,7 +11,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -22,45 +22,37 @@ using Eigen::Vector3d;
 constexpr std::array<std::array<std::uint32_t, 4>, 6> box_faces{
     {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
 
-/// Whether its surface is a mesh.
-bool is_surface(const Shape& shape) {
-  return std::holds_alternative<MeshShape>(shape) || std::holds_alternative<ConvexHull>(shape);
+[[noreturn]] void refuse(const Shape& shape) {
+  throw std::invalid_argument(std::string("RigidSurface: a ") + kind_name(shape) + " cannot meet a mesh that bends");
 }
 
-std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
-  if (is_surface(shape.shape)) {
-    const MeshShape mesh = surface_of(shape.shape);
-    return mesh.mesh->placed_vertices(shape.rotation, mesh.scale);
-  }
-  if (std::holds_alternative<Sphere>(shape.shape)) return {Vector3d::Zero()};
-  if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
-    const Vector3d half = shape.rotation.col(2) * capsule->half_length;
-    return {-half, half};
-  }
-  if (!std::holds_alternative<Box>(shape.shape)) {
-    throw std::invalid_argument(std::string("RigidSurface: a ") + kind_name(shape.shape) +
-                                " cannot meet a mesh that bends");
-  }
+/// Of a rounded box: the ends of its generators, in all combinations.
+std::vector<Vector3d> corners_of(const RoundedCore& core) {
   std::vector<Vector3d> corners;
-  for (unsigned i = 0; i < 8; ++i) {
+  for (unsigned i = 0; i < 1u << core.generators.size(); ++i) {
     Vector3d corner = Vector3d::Zero();
-    for (unsigned d = 0; d < 3; ++d) {
-      corner += i >> d & 1 ? shape.half_axes[d] : Vector3d(-shape.half_axes[d]);
+    for (unsigned d = 0; d < core.generators.size(); ++d) {
+      const Vector3d half = core.generators[d].length * core.generators[d].direction;
+      corner += i >> d & 1 ? half : Vector3d(-half);
     }
     corners.push_back(corner);
   }
   return corners;
 }
 
-/// The mesh keeps its own tree; those of other shapes are made here.
+std::vector<Vector3d> offsets_of(const PlacedShape& shape) {
+  if (rounded_box_of(shape.shape)) return corners_of(placed_core(shape));
+  if (!triangles_of(shape.shape)) refuse(shape.shape);
+  const MeshShape mesh = surface_of(shape.shape);
+  return mesh.mesh->placed_vertices(shape.rotation, mesh.scale);
+}
+
+/// The mesh keeps its own tree; those of rounded boxes are made here.
 std::shared_ptr<const SurfaceTree> tree_of(const PlacedShape& shape, const std::vector<Vector3d>& offsets) {
-  if (is_surface(shape.shape)) {
-    const auto mesh = surface_of(shape.shape).mesh;
-    return {mesh, &mesh->surface_tree()};
-  }
+  if (const auto mesh = triangles_of(shape.shape)) return {mesh, &mesh->surface_tree()};
   const auto made = [](SurfaceTree tree) { return std::make_shared<const SurfaceTree>(std::move(tree)); };
-  if (std::holds_alternative<Sphere>(shape.shape)) return made(SurfaceTree::point());
-  if (std::holds_alternative<Capsule>(shape.shape)) return made(SurfaceTree::segment());
+  if (offsets.size() == 1) return made(SurfaceTree::point());
+  if (offsets.size() == 2) return made(SurfaceTree::segment());
   std::vector<Mesh::Triangle> triangles;
   for (const auto& [a, b, c, d] : box_faces) {
     triangles.push_back({a, b, c});
@@ -76,10 +68,10 @@ std::shared_ptr<const SurfaceTree> tree_of(const PlacedShape& shape, const std::
 template <int Degree>
 RigidSurface<Degree>::RigidSurface(const PlacedShape& shape)
     : offsets_(offsets_of(shape)), tree_(tree_of(shape, offsets_)), surface_(*tree_) {
-  if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) surface_.set_radius(ball->radius);
-  if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) surface_.set_radius(capsule->radius);
-  if (std::holds_alternative<Box>(shape.shape) || std::holds_alternative<ConvexHull>(shape.shape)) surface_.set_solid();
-  for (const Vector3d& offset : offsets_) reach_ = std::max(reach_, norm(offset));
+  const auto box = rounded_box_of(shape.shape);
+  if (box) surface_.set_radius(box->radius);
+  if (box ? box->dimension() == 3 : polytope_of(shape.shape) != nullptr) surface_.set_solid();
+  for (const Vector3d& offset : offsets_) vertex_radius_ = std::max(vertex_radius_, norm(offset));
 }
 
 template <int Degree>
@@ -119,12 +111,12 @@ void RigidSurface<Degree>::move(const certificates::RigidMotion<PathDegree>& mot
     for (std::size_t i = 0; i < 3; ++i) farthest = std::max(farthest, points[i][k].cwiseAbs().maxCoeff());
   }
   const double angle = norm(motion.angular_velocity) * (t1 - t0);
-  const double turned = 2.0 / 81 * angle * angle * angle * reach_;
+  const double turned = 2.0 / 81 * angle * angle * angle * vertex_radius_;
   // A rotation errs by its bound times the sum of the coordinates, at most twice the length; the middle point has that
   // of the first one, once more times half of the angle. Sums are rounded, and so is what is said of the angle.
-  const double rotation = std::max(begin.error(), end.error()) * 2 * reach_;
+  const double rotation = std::max(begin.error(), end.error()) * 2 * vertex_radius_;
   surface_.set_uncertainty(path.error +
-                           (turned + (1 + angle) * (rotation + 0x1p-50 * (farthest + reach_))) * (1 + 0x1p-40));
+                           (turned + (1 + angle) * (rotation + 0x1p-50 * (farthest + vertex_radius_))) * (1 + 0x1p-40));
   surface_.refit(t0, t1);
 }
 

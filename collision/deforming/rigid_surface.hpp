@@ -38,11 +38,11 @@ class RigidSurface {
   const MovingSurface<Degree>& surface() const { return surface_; }
   MovingSurface<Degree>& change_surface() { return surface_; }
   /// Of the vertices from the centre, at most, rounded; units of length.
-  double reach() const { return reach_; }
+  double vertex_radius() const { return vertex_radius_; }
 
  private:
   std::vector<Eigen::Vector3d> offsets_;  ///< of the vertices from the centre
-  double reach_ = 0;
+  double vertex_radius_ = 0;
   std::shared_ptr<const SurfaceTree> tree_;  ///< in its place, or in a mesh
   MovingSurface<Degree> surface_;
 };

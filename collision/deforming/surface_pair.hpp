@@ -35,8 +35,8 @@ class SurfacePair {
   SurfacePair(const Surface& a, const Surface& b, const SurfaceQuery& query, bool itself);
 
   bool are_leaves(NodePair n) const { return a_.tree().nodes()[n.a].is_leaf && b_.tree().nodes()[n.b].is_leaf; }
-  bool overlap(NodePair n, OverlapSpan& span, double reach) const {
-    return overlap_span<Degree>(a_.boxes()[n.a], b_.boxes()[n.b], reach, span);
+  bool overlap(NodePair n, OverlapSpan& span, double widening) const {
+    return overlap_span<Degree>(a_.boxes()[n.a], b_.boxes()[n.b], widening, span);
   }
   const SurfaceElement& element_a(NodePair n) const { return a_.tree().elements()[a_.tree().nodes()[n.a].first]; }
   const SurfaceElement& element_b(NodePair n) const { return b_.tree().elements()[b_.tree().nodes()[n.b].first]; }

@@ -60,7 +60,7 @@ class SurfaceTouching : private SurfacePair<Degree> {
   double holds_until(double s, double enough) const;
 
   template <class Visit>
-  void for_leaves_near(double s, double reach, const Visit& visit) const;
+  void for_leaves_near(double s, double distance, const Visit& visit) const;
 
   /// The path of a vertex, less that of a place.
   static Point path(const Surface& surface, std::uint32_t v, const Eigen::Vector3d& origin);
@@ -79,13 +79,13 @@ class SurfaceTouching : private SurfacePair<Degree> {
 
 template <int Degree>
 template <class Visit>
-void SurfaceTouching<Degree>::for_leaves_near(double s, double reach, const Visit& visit) const {
+void SurfaceTouching<Degree>::for_leaves_near(double s, double distance, const Visit& visit) const {
   std::vector<NodePair> stack{{0, 0}};
   while (!stack.empty()) {
     const NodePair n = stack.back();
     stack.pop_back();
     OverlapSpan span{s, s};
-    if (!this->overlap(n, span, reach)) continue;
+    if (!this->overlap(n, span, distance)) continue;
     if (this->are_leaves(n)) {
       if (visit(n)) return;
     } else {
@@ -97,8 +97,8 @@ void SurfaceTouching<Degree>::for_leaves_near(double s, double reach, const Visi
 template <int Degree>
 double SurfaceTouching<Degree>::holds_until(double s, double enough) const {
   double until = -1;
-  const double reach = level(0x1p10 * tolerance_.absolute) * (1 + 0x1p-40);
-  for_leaves_near(s, reach, [&](NodePair leaves) {
+  const double distance = level(0x1p10 * tolerance_.absolute) * (1 + 0x1p-40);
+  for_leaves_near(s, distance, [&](NodePair leaves) {
     this->for_edges_and_faces(leaves, [&](Kind kind, const std::array<std::uint32_t, 5>& vertices, std::uint32_t) {
       if (until <= enough || until < 0) until = std::max(until, through_until(kind, vertices, s));
     });

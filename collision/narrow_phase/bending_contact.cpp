@@ -44,10 +44,10 @@ class BendingPair {
       : a_(a),
         b_(b),
         horizon_(horizon),
-        tolerance_(bending_tolerance * script_of(a.shape)->bounding_radius()),
+        tolerance_(bending_tolerance * script_of(a.shape.shape)->bounding_radius()),
         pieces_(path_of(a.motion), path_of(b.motion), turning_speed(a) + turning_speed(b), keyframes_of(a, b),
                 std::min(a.shape.bounding_radius, b.shape.bounding_radius),
-                longest_way * script_of(a.shape)->bounding_radius()) {
+                longest_way * script_of(a.shape.shape)->bounding_radius()) {
     query_ = {.tolerance = 1, .absolute_tolerance = tolerance_, .overlaps = false};
     if (turning_speed(b) > 0) longest_ = surface_b().longest_piece(turning_error * tolerance_);
   }
@@ -128,8 +128,8 @@ class BendingPair {
       if (const auto found = touching.closest(t, distance)) {
         Contact contact = found->contact;
         contact.time = t;
-        if (const auto* const hull = std::get_if<ConvexHull>(&b_.shape.shape)) {
-          contact.feature_b = hull->polytope->feature_of(contact.feature_b);
+        if (const Polytope* const hull = polytope_of(b_.shape.shape)) {
+          contact.feature_b = hull->feature_of(contact.feature_b);
         }
         return contact;
       }
@@ -151,7 +151,7 @@ class BendingPair {
   /// How fast a point of a body goes, at most, because it turns.
   static double turning_speed(const Body& body) {
     if constexpr (turns<Motion>) {
-      const bool counts = !bends(body.shape.shape) && !std::holds_alternative<Sphere>(body.shape.shape);
+      const bool counts = !bends(body.shape.shape) && ball_radius(body.shape.shape) == 0;
       return counts ? norm(body.motion.angular_velocity) * body.shape.bounding_radius : 0;
     }
     return 0;
@@ -193,7 +193,7 @@ class BendingPair {
 
   static std::vector<double> keyframes_of(const Body& a, const Body& b) {
     std::vector<double> times;
-    for (const MeshScript* const script : {script_of(a.shape), script_of(b.shape)}) {
+    for (const MeshScript* const script : {script_of(a.shape.shape), script_of(b.shape.shape)}) {
       if (!script) continue;
       for (const auto& keyframe : script->keyframes()) times.push_back(keyframe.time);
     }

@@ -1,9 +1,10 @@
 #include "collision/narrow_phase/convex_core.hpp"
 
 #include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 
 #include <stdexcept>
-#include <variant>
+#include <string>
 
 namespace kds::collision {
 namespace {
@@ -33,27 +34,35 @@ const HullStructure& structure_of_point() {
 
 }  // namespace
 
-ConvexCore::ConvexCore(const Shape& shape) : structure_(&structure_of_point()) {
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape)) {
-    hull_ = hull->polytope->points();
-    structure_ = &hull->polytope->structure();
-  } else if (const auto* const box = std::get_if<Box>(&shape)) {
-    own_ = box_corners(box->half_extents);
-    size_ = 8;
-    structure_ = &structure_of_box();
-  } else if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
-    own_[0] = {0, 0, -capsule->half_length};
-    own_[1] = {0, 0, capsule->half_length};
-    size_ = 2;
-    structure_ = &structure_of_segment();
-    radius_ = capsule->radius;
-  } else if (const auto* const ball = std::get_if<Sphere>(&shape)) {
-    own_[0] = Vector3d::Zero();
-    size_ = 1;
-    radius_ = ball->radius;
-  } else {
-    throw std::logic_error("ConvexCore: asked of a mesh");
-  }
+ConvexCore::ConvexCore(const Shape& shape) {
+  const auto of_box = [&](const RoundedBox& box) {
+    const Vector3d& half = box.half_extents;
+    switch (box.dimension()) {
+      case 3:
+        own_ = box_corners(half);
+        size_ = 8;
+        structure_ = &structure_of_box();
+        break;
+      case 1:
+        own_[0] = {0, 0, -half[2]}, own_[1] = {0, 0, half[2]};
+        size_ = 2;
+        structure_ = &structure_of_segment();
+        break;
+      default:
+        own_[0] = Vector3d::Zero();
+        size_ = 1;
+        structure_ = &structure_of_point();
+    }
+    radius_ = box.radius;
+  };
+  const auto of_hull = [&](const Polytope& polytope) {
+    hull_ = polytope.points();
+    structure_ = &polytope.structure();
+  };
+  const auto of_others = [&](const auto&) {
+    throw std::logic_error(std::string("ConvexCore: asked of a ") + kind_name(shape));
+  };
+  ask_form(shape, ByForm{of_box, of_hull, of_others});
 }
 
 }  // namespace kds::collision

@@ -12,12 +12,12 @@
 
 namespace kds::collision {
 
-/// The hull of points in the coordinates of a body, and all that is nearer to it than a radius: of a ball its centre,
-/// of a capsule the ends of its segment, of a box its corners (bit d of the index set: at the upper end of axis d), of
-/// a hull its points. None of these numbers is rounded.
+/// The hull of points in the coordinates of a body, and all that is nearer to it than a radius: of a rounded box its
+/// corners (of a box, bit d of the index set: at the upper end of axis d; of a capsule, the ends of its segment; of a
+/// ball, its centre), of a hull its points. None of these numbers is rounded.
 class ConvexCore {
  public:
-  /// Precondition: the shape is no mesh. Refers to it.
+  /// Precondition: the shape is a rounded box or a hull. Refers to it.
   explicit ConvexCore(const Shape& shape);
 
   std::span<const Eigen::Vector3d> points() const { return hull_.empty() ? std::span(own_.data(), size_) : hull_; }
@@ -31,7 +31,7 @@ class ConvexCore {
   std::span<const Eigen::Vector3d> hull_;
   std::array<Eigen::Vector3d, 8> own_;
   std::size_t size_ = 0;
-  const HullStructure* structure_;
+  const HullStructure* structure_ = nullptr;
   double radius_ = 0;
 };
 

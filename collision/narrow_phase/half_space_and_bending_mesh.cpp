@@ -161,7 +161,7 @@ class PlaneAndMesh {
   }
 
  private:
-  const MeshScript& script() const { return *script_of(mesh_.shape); }
+  const MeshScript& script() const { return *script_of(mesh_.shape.shape); }
 
   Heights<degree> heights(double t0, double t1) const {
     const auto plane = path_of(plane_.motion).restarted(t0), mesh = path_of(mesh_.motion).restarted(t0);

@@ -4,6 +4,7 @@
 #include "collision/shapes/obb_tree.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 #include "kds/arithmetic/exact.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -104,9 +105,9 @@ void look(const Mesh& mesh, const PlacedShape& shape, double scale, const Vector
 
 /// The vertices of a hull or a mesh that are lowest, up to a margin.
 std::vector<std::uint32_t> lowest_vertices(const PlacedShape& shape, const Vector3d& normal, double margin) {
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
-    Lowest lowest(shape, 1, hull->polytope->points(), normal, margin);
-    for (const std::uint32_t i : hull->polytope->structure().corners) lowest.take(i);
+  if (const Polytope* const hull = polytope_of(shape.shape)) {
+    Lowest lowest(shape, 1, hull->points(), normal, margin);
+    for (const std::uint32_t i : hull->structure().corners) lowest.take(i);
     return lowest.vertices();
   }
   const auto& mesh = std::get<MeshShape>(shape.shape);
@@ -118,19 +119,15 @@ std::vector<std::uint32_t> lowest_vertices(const PlacedShape& shape, const Vecto
 }  // namespace
 
 LowestOfShape::LowestOfShape(const PlacedShape& shape, const Vector3d& normal) {
-  if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) {
-    place_.radius = ball->radius;
-  } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
-    place_.radius = capsule->radius;
-    generators_.push_back({shape.rotation.col(2), capsule->half_length});
-  } else if (std::holds_alternative<Box>(shape.shape)) {
-    for (const Vector3d& half : shape.half_axes) generators_.push_back({half, 1});
+  if (rounded_box_of(shape.shape)) {
+    const RoundedCore core = placed_core(shape);
+    place_.radius = core.radius;
+    generators_ = core.generators;
   } else {
-    const auto* const mesh = std::get_if<MeshShape>(&shape.shape);
-    const auto points =
-        mesh ? mesh->mesh->vertices() : std::get<ConvexHull>(shape.shape).polytope->points();
+    const MeshShape surface = surface_of(shape.shape);
+    const auto points = surface.mesh->vertices();
     place_.turn = shape.rotation;
-    place_.scale = mesh ? mesh->scale : 1;
+    place_.scale = surface.scale;
     const auto vertices = lowest_vertices(shape, normal, 2 * roundings * shape.bounding_radius);
     place_.point = points[vertices.front()];
     Exact least = vertices.size() > 1 ? place_.height<Exact>(normal) : Exact(0.0);

@@ -15,34 +15,54 @@
 #include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/turning/turning_contact.hpp"
 #include "collision/narrow_phase/turning/turning_mesh_contact.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 
 #include <algorithm>
 #include <optional>
+#include <type_traits>
+#include <utility>
+#include <variant>
 
 namespace kds::collision {
 namespace {
 
-/// A row for each kind of shape: what tests it against itself and the kinds above it.
+template <class Kind>
+using FormOf = std::decay_t<decltype(form_of(detail::ShapeKind<Kind>{}, std::declval<const Kind&>()))>;
+/// Whether the shapes of a kind are convex solids, which have a ConvexCore.
+template <class Kind>
+constexpr bool has_core = std::is_same_v<FormOf<Kind>, RoundedBox> || std::is_same_v<FormOf<Kind>, Polytope>;
+
+/// Balls, boxes, capsules and hulls, in the order of Shape.
+constexpr auto solids = []<class... Kinds>(std::type_identity<std::variant<Kinds...>>) {
+  return (KindList<>{} + ... + std::conditional_t<has_core<Kinds>, KindList<Kinds>, KindList<>>{});
+}(std::type_identity<Shape>{});
+
+/// The rows that are the same however bodies move.
+template <class Motion>
+constexpr void add_rows_of_all_motions(PairTable<Motion>& table) {
+  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<Motion>{});
+  using CompoundTests = CompoundContact<Motion>;
+  table.template add<Compound>(solids + KindList<MeshShape, HalfSpace, Compound>{}, CompoundTests{});
+  if constexpr (Motion::degree <= 2) {
+    table.template add<BendingMesh>(solids + KindList<MeshShape, BendingMesh>{}, BendingContact<Motion>{});
+    table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<Motion>{});
+    table.template add<Compound, BendingMesh>(CompoundTests{});
+  }
+}
+
+/// The general tests first, then those of particular kinds.
 template <int Degree>
 constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
   PairTable<certificates::PointMotion<Degree>> table;
+  add_rows_of_all_motions(table);
+  table.add_among(solids, HullContact<Degree>{});
+  table.template add<HalfSpace>(solids + KindList<MeshShape>{}, HalfSpaceContact<Degree>{});
   table.template add<Sphere, Sphere>(BallsContact<Degree>{});
   table.template add<Box, Sphere>(BoxBallContact<Degree>{});
   table.template add<Box, Box>(BoxesContact<Degree>{});
   table.template add<Capsule, Sphere, Box, Capsule>(CapsuleContact<Degree>{});
-  table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(HullContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, MeshShape>(MeshContact<Degree>{});
   table.template add<MeshShape, ConvexHull>(MeshHullContact<Degree>{});
-  table.template add<HalfSpace, Sphere, Box, Capsule, MeshShape, ConvexHull>(HalfSpaceContact<Degree>{});
-  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::PointMotion<Degree>>{});
-  using CompoundTests = CompoundContact<certificates::PointMotion<Degree>>;
-  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(CompoundTests{});
-  if constexpr (Degree <= 2) {
-    table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(
-        BendingContact<certificates::PointMotion<Degree>>{});
-    table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<certificates::PointMotion<Degree>>{});
-    table.template add<Compound, BendingMesh>(CompoundTests{});
-  }
   return table;
 }
 
@@ -50,19 +70,10 @@ constexpr PairTable<certificates::PointMotion<Degree>> translating_table() {
 template <int Degree>
 constexpr PairTable<certificates::RigidMotion<Degree>> turning_table() {
   PairTable<certificates::RigidMotion<Degree>> table;
-  table.template add<Sphere, Sphere>(TurningContact<Degree>{});
-  table.template add<Box, Sphere, Box>(TurningContact<Degree>{});
-  table.template add<Capsule, Sphere, Box, Capsule>(TurningContact<Degree>{});
-  table.template add<ConvexHull, Sphere, Box, Capsule, ConvexHull>(TurningContact<Degree>{});
+  add_rows_of_all_motions(table);
+  table.add_among(solids, TurningContact<Degree>{});
+  table.template add<HalfSpace>(solids + KindList<MeshShape>{}, TurningContact<Degree>{});
   table.template add<MeshShape, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningMeshContact<Degree>{});
-  table.template add<HalfSpace, Sphere, Box, Capsule, ConvexHull, MeshShape>(TurningContact<Degree>{});
-  table.template add<HalfSpace, HalfSpace>(HalfSpacesContact<certificates::RigidMotion<Degree>>{});
-  using CompoundTests = CompoundContact<certificates::RigidMotion<Degree>>;
-  table.template add<Compound, Sphere, Box, Capsule, MeshShape, ConvexHull, HalfSpace, Compound>(CompoundTests{});
-  table.template add<BendingMesh, Sphere, Box, Capsule, MeshShape, ConvexHull, BendingMesh>(
-      BendingContact<certificates::RigidMotion<Degree>>{});
-  table.template add<HalfSpace, BendingMesh>(HalfSpaceAndBendingMesh<certificates::RigidMotion<Degree>>{});
-  table.template add<Compound, BendingMesh>(CompoundTests{});
   return table;
 }
 

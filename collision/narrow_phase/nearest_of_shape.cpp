@@ -1,11 +1,8 @@
 #include "collision/narrow_phase/nearest_of_shape.hpp"
 
 #include "collision/narrow_phase/nearest_point.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/half_space.hpp"
-#include "collision/shapes/mesh.hpp"
-#include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -15,7 +12,6 @@
 #include <cstdint>
 #include <limits>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::collision {
@@ -34,20 +30,16 @@ NearestOfShape grown(const Vector3d& of_core, double radius, const Vector3d& to)
   return {distance - radius, of_core + (radius / distance) * way};
 }
 
-NearestOfShape nearest_of_box(const PlacedShape& box, const Vector3d& to) {
+NearestOfShape nearest_of_rounded_box(const RoundedCore& box, const Vector3d& to) {
   Vector3d point = Vector3d::Zero();
-  bool inside = true;
-  for (const Vector3d& half : box.half_axes) {
+  bool inside = box.generators.size() == 3;
+  for (const auto& each : box.generators) {
+    const Vector3d half = each.length * each.direction;
     const double part = dot(to, half) / squared_norm(half);
     inside = inside && std::abs(part) <= 1;
     point += std::clamp(part, -1.0, 1.0) * half;
   }
-  return inside ? NearestOfShape{0, to} : found(point, to);
-}
-
-NearestOfShape nearest_of_capsule(const Capsule& capsule, const Matrix3d& rotation, const Vector3d& to) {
-  const Vector3d axis = rotation.col(2);
-  return grown(std::clamp(dot(axis, to), -capsule.half_length, capsule.half_length) * axis, capsule.radius, to);
+  return inside ? NearestOfShape{0, to} : grown(point, box.radius, to);
 }
 
 /// Keeps the nearest of many.
@@ -159,18 +151,16 @@ NearestOfShape nearest_of_parts(const std::vector<PlacedShape>& parts, const Vec
 }  // namespace
 
 NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, double t) {
-  if (const auto* const ball = std::get_if<Sphere>(&shape.shape)) return grown(Vector3d::Zero(), ball->radius, to);
-  if (std::holds_alternative<Box>(shape.shape)) return nearest_of_box(shape, to);
-  if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
-    return nearest_of_capsule(*capsule, shape.rotation, to);
-  }
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
-    return nearest_of_hull(*hull->polytope, shape.rotation, to);
-  }
-  if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) return nearest_of_mesh(*mesh, shape.rotation, to);
-  if (shape.parts) return nearest_of_parts(*shape.parts, to);
-  if (unbounded(shape.shape)) return nearest_of_half_space(placed_half_space(shape), to);
-  return nearest_of_bending_mesh(*std::get<BendingMesh>(shape.shape).script, shape.rotation, to, t);
+  const Matrix3d& rotation = shape.rotation;
+  const ByForm nearest{
+      [&](const RoundedBox&) { return nearest_of_rounded_box(placed_core(shape), to); },
+      [&](const Polytope& polytope) { return nearest_of_hull(polytope, rotation, to); },
+      [&](const MeshShape& mesh) { return nearest_of_mesh(mesh, rotation, to); },
+      [&](const BendingMesh& mesh) { return nearest_of_bending_mesh(*mesh.script, rotation, to, t); },
+      [&](const HalfSpace&) { return nearest_of_half_space(placed_half_space(shape), to); },
+      [&](const Compound&) { return nearest_of_parts(*shape.parts, to); },
+  };
+  return ask_form(shape.shape, nearest);
 }
 
 }  // namespace kds::collision

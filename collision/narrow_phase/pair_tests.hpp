@@ -73,7 +73,16 @@ struct Swapped {
   }
 };
 
-/// Pair tests by the kinds of a and b, the places of their shapes in the list of Shape.
+/// Some kinds of shapes.
+template <class... Kinds>
+struct KindList {};
+template <class... A, class... B>
+constexpr KindList<A..., B...> operator+(KindList<A...>, KindList<B...>) {
+  return {};
+}
+
+/// Pair tests by the kinds of a and b, the places of their shapes in the list of Shape. What is added later takes the
+/// place of what has been added before.
 template <class Motion>
 class PairTable {
  public:
@@ -85,6 +94,18 @@ class PairTable {
   template <class A, class... Others, class Tests>
   constexpr void add(Tests) {
     (add_pair<A, Others, Tests>(), ...);
+  }
+
+  template <class A, class... Others, class Tests>
+  constexpr void add(KindList<Others...>, Tests tests) {
+    add<A, Others...>(tests);
+  }
+  /// Adds the tests of each kind of a list with itself and with those before it.
+  template <class First, class... Others, class Tests>
+  constexpr void add_among(KindList<First, Others...>, Tests tests) {
+    add<First, First>(tests);
+    (add_pair<Others, First, Tests>(), ...);
+    if constexpr (sizeof...(Others) > 0) add_among(KindList<Others...>{}, tests);
   }
 
   /// Whether there are tests of a kind, with itself at least.

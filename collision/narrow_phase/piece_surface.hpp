@@ -5,6 +5,7 @@
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
@@ -14,15 +15,8 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <variant>
 
 namespace kds::collision {
-
-/// The script of a mesh that bends; null for other shapes.
-inline const MeshScript* script_of(const PlacedShape& shape) {
-  const auto* const bending = std::get_if<BendingMesh>(&shape.shape);
-  return bending ? bending->script.get() : nullptr;
-}
 
 /// The surface of one body. Keeps a reference to the body.
 ///
@@ -35,7 +29,7 @@ class PieceSurface {
   /// Of the paths of its vertices.
   static constexpr int degree = turns<Motion> ? 2 : Motion::degree;
 
-  explicit PieceSurface(const Body& body) : body_(body), script_(script_of(body.shape)) {
+  explicit PieceSurface(const Body& body) : body_(body), script_(script_of(body.shape.shape)) {
     if (script_) {
       bent_.emplace(script_->tree());
     } else if constexpr (turns<Motion>) {
@@ -49,9 +43,9 @@ class PieceSurface {
   /// turn.
   double longest_piece(double error) const {
     if constexpr (turns<Motion>) {
-      if (script_ || !(rigid_->reach() > 0)) return never;
+      if (script_ || !(rigid_->vertex_radius() > 0)) return never;
       const double rate = norm(body_.motion.angular_velocity);
-      return rate > 0 ? std::cbrt(81.0 / 2 * error / rigid_->reach()) / rate : never;
+      return rate > 0 ? std::cbrt(81.0 / 2 * error / rigid_->vertex_radius()) / rate : never;
     }
     return never;
   }

@@ -14,7 +14,9 @@
 namespace kds::collision {
 
 /// Centre of b minus centre of a: coefficients of a polynomial in tau, the time since the epoch of the pair. It is the
-/// whole motion of a pair of bodies that keep their orientations. (Those that turn: turning/pair_frame.hpp.)
+/// whole motion of a pair of bodies that keep their orientations. (Those that turn: turning/pair_frame.hpp.) It is the
+/// plain form, certificates::relative_motion(), whose bounds meshes need by coefficient; pairs of convex shapes have a
+/// quicker one (quick_motion.hpp).
 template <int Degree>
 struct RelativeMotion {
   std::array<Eigen::Vector3d, std::size_t{Degree} + 1> coefficients;

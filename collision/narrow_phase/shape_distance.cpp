@@ -1,12 +1,8 @@
 #include "collision/narrow_phase/shape_distance.hpp"
 
 #include "collision/narrow_phase/hull_distance.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/half_space.hpp"
-#include "collision/shapes/mesh.hpp"
-#include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rounded_core.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
 
 #include <boost/container/small_vector.hpp>
@@ -16,8 +12,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::collision {
@@ -33,13 +29,13 @@ class Convex {
 
   explicit Convex(Corners corners, double radius = 0) : corners_(std::move(corners)), radius_(radius) {
     for (const Vector3d& corner : corners_) middle_ += corner / static_cast<double>(corners_.size());
-    for (const Vector3d& corner : corners_) reach_ = std::max(reach_, norm(corner - middle_));
+    for (const Vector3d& corner : corners_) corner_distance_ = std::max(corner_distance_, norm(corner - middle_));
   }
 
   double radius() const { return radius_; }
   const Vector3d& middle() const { return middle_; }
   /// All of it is within this distance from the middle.
-  double reach() const { return reach_ + radius_; }
+  double bounding_radius() const { return corner_distance_ + radius_; }
 
   /// Of the corners.
   const Vector3d& farthest(const Vector3d& along) const {
@@ -55,7 +51,7 @@ class Convex {
   Corners corners_;
   double radius_;
   Vector3d middle_ = Vector3d::Zero();
-  double reach_ = 0;
+  double corner_distance_ = 0;
 };
 
 /// A point of the difference of two sets.
@@ -144,7 +140,7 @@ class Part {
   Vector3d centre_ = Vector3d::Zero();
 };
 
-/// Of a ball, a capsule or a box.
+/// Of a rounded box.
 Convex rounded(const PlacedShape& shape, const Vector3d& centre) {
   const RoundedCore core = rounded_core(shape);
   Convex::Corners corners;
@@ -160,27 +156,26 @@ Convex rounded(const PlacedShape& shape, const Vector3d& centre) {
 
 /// Precondition: no half-space.
 void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::vector<Part>& parts) {
-  if (shape.parts) {
-    for (const PlacedShape& part : *shape.parts) add_parts(part, centre, t, parts);
-  } else if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+  const auto place_of = [&](const Vector3d& x) -> Vector3d { return centre + placed_vertex(shape.rotation, 1, x); };
+  const auto of_box = [&](const RoundedBox&) { parts.emplace_back(rounded(shape, centre)); };
+  const auto of_hull = [&](const Polytope& polytope) {
     Convex::Corners corners;
-    for (const Vector3d& point : hull->polytope->points()) {
-      corners.push_back(centre + placed_vertex(shape.rotation, 1, point));
-    }
+    for (const Vector3d& point : polytope.points()) corners.push_back(place_of(point));
     parts.emplace_back(Convex(std::move(corners)));
-  } else if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) {
-    parts.emplace_back(*mesh, shape.rotation, centre);
-  } else if (const auto* const bending = std::get_if<BendingMesh>(&shape.shape)) {
-    for (const Mesh::Triangle& triangle : bending->script->triangles()) {
+  };
+  const auto of_mesh = [&](const MeshShape& mesh) { parts.emplace_back(mesh, shape.rotation, centre); };
+  const auto of_bending_mesh = [&](const BendingMesh& mesh) {
+    for (const Mesh::Triangle& triangle : mesh.script->triangles()) {
       Convex::Corners corners;
-      for (const std::uint32_t vertex : triangle) {
-        corners.push_back(centre + placed_vertex(shape.rotation, 1, bending->script->position(vertex, t)));
-      }
+      for (const std::uint32_t vertex : triangle) corners.push_back(place_of(mesh.script->position(vertex, t)));
       parts.emplace_back(Convex(std::move(corners)));
     }
-  } else {
-    parts.emplace_back(rounded(shape, centre));
-  }
+  };
+  const auto of_compound = [&](const Compound&) {
+    for (const PlacedShape& part : *shape.parts) add_parts(part, centre, t, parts);
+  };
+  const auto of_half_space = [](const HalfSpace&) { throw std::logic_error("shape_distance: parts of a half-space"); };
+  ask_form(shape.shape, ByForm{of_box, of_hull, of_mesh, of_bending_mesh, of_compound, of_half_space});
 }
 
 /// Keeps the nearest points of many pairs of parts.
@@ -202,7 +197,7 @@ class Nearest {
         continue;
       }
       const std::size_t known = waiting.size();
-      if (leaf_b || (!leaf_a && pair.a.reach() > pair.b.reach())) {
+      if (leaf_b || (!leaf_a && pair.a.bounding_radius() > pair.b.bounding_radius())) {
         const std::uint32_t first = a.first_child(pair.of_a);
         for (std::uint32_t child = first; child < first + 2; ++child) {
           add(waiting, {a.volume(child), pair.b, child, pair.of_b, pair.way});
@@ -230,7 +225,7 @@ class Nearest {
 
   void add(std::vector<Pair>& waiting, Pair pair) const {
     const double radii = pair.a.radius() + pair.b.radius();
-    if (too_far(norm(pair.b.middle() - pair.a.middle()) - pair.a.reach() - pair.b.reach())) return;
+    if (too_far(norm(pair.b.middle() - pair.a.middle()) - pair.a.bounding_radius() - pair.b.bounding_radius())) return;
     if (const double square = squared_norm(pair.way); square > 0) {  // a fifth faster than without
       const double apart = dot(pair.b.farthest(Vector3d(-pair.way)) - pair.a.farthest(pair.way), pair.way);
       if (too_far(apart / std::sqrt(square) - radii)) return;

@@ -6,11 +6,11 @@
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/shapes/rounded_core.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -31,10 +31,10 @@ double extent_along(const PlacedShape& shape, const Vector3d& along) {
     return most;
   }
   if (has_mesh(shape.shape)) return -LowestOfShape(shape, -along).height();
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
+  if (const Polytope* const hull = polytope_of(shape.shape)) {
     double most = -never;
-    for (const std::uint32_t i : hull->polytope->structure().corners) {
-      most = std::max(most, dot(along, rotated(shape.rotation, hull->polytope->points()[i])));
+    for (const std::uint32_t i : hull->structure().corners) {
+      most = std::max(most, dot(along, rotated(shape.rotation, hull->points()[i])));
     }
     return most;
   }
@@ -62,8 +62,7 @@ SurfaceGap surface_gap(const TranslatingShape<Degree>& a, const TranslatingShape
     const double distance = norm(apart);
     if (distance > 0) return {distance - radius_a - radius_b, apart / distance};
   }
-  const bool hull =
-      std::holds_alternative<ConvexHull>(a.shape.shape) || std::holds_alternative<ConvexHull>(b.shape.shape);
+  const bool hull = polytope_of(a.shape.shape) || polytope_of(b.shape.shape);
   const Vector3d normal = hull ? contact_at(a, b, t).normal : rounded_contact(a, b, t).normal;
   return {gap_along(a, b, normal, t), normal};
 }

@@ -2,14 +2,14 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/kept_rotation.hpp"
-#include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/mesh_script.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <variant>
 
 namespace kds::collision {
 namespace {
@@ -62,10 +62,9 @@ SurfaceRate rate_of_script(const MeshScript& script, const Matrix3d& rotation, c
 
 template <class Motion>
 SurfaceRate surface_rate(const MovingShape<Motion>& body, const Contact& contact, bool is_a) {
-  const auto* const bending = std::get_if<BendingMesh>(&body.shape.shape);
-  if (!bending) return {};
-  return rate_of_script(*bending->script, kept_rotation(body.shape, body.motion),
-                        is_a ? contact.feature_a : contact.feature_b,
+  const MeshScript* const script = script_of(body.shape.shape);
+  if (!script) return {};
+  return rate_of_script(*script, kept_rotation(body.shape, body.motion), is_a ? contact.feature_a : contact.feature_b,
                         contact.point - path_of(body.motion).position(contact.time), contact.normal, contact.time);
 }
 

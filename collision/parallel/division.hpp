@@ -86,9 +86,9 @@ struct Division {
     owner[at] = its_owner, known[at] = sets.number_of(its_knowers);
   }
   /// Finds the domains that know a body with its centre at a place and with a radius: those in whose halo it is.
-  void find_knowers(const Eigen::Vector3d& place, double reach, std::vector<DomainIndex>& found) const {
+  void find_knowers(const Eigen::Vector3d& place, double radius, std::vector<DomainIndex>& found) const {
     found.clear();
-    partition.each_within(place, halo + reach,
+    partition.each_within(place, halo + radius,
                           [&](std::size_t cell) { found.push_back(static_cast<DomainIndex>(cell)); });
   }
 
@@ -141,13 +141,13 @@ MovedBy moved_by(const Bodies<Motion>& bodies, const Scripts<Motion>& scripts, B
 /// The radius of the ball about the centre of a body that holds it; where bodies are attached to each other, all of
 /// these.
 template <class Motion>
-double reach(const Bodies<Motion>& bodies, BodySlot slot) {
+double radius_with_sensors(const Bodies<Motion>& bodies, BodySlot slot) {
   const BodySlot mover = mover_of(bodies, slot);
-  double reach = bodies[mover].bounding_radius;
+  double radius = bodies[mover].bounding_radius;
   for (const BodySlot sensor : bodies.attachments().sensors(mover)) {
-    reach = std::max(reach, bodies[sensor].bounding_radius);
+    radius = std::max(radius, bodies[sensor].bounding_radius);
   }
-  return reach;
+  return radius;
 }
 
 /// The mean distance of neighbours of so many places between two corners; along axes in which all places are much the
@@ -188,11 +188,11 @@ DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, 
                         BodySlot slot, double now, std::vector<DomainIndex>& knowers) {
   const Eigen::Vector3d place = place_at(bodies.path(slot), now);
   const auto moved = detail::moved_by(bodies, scripts, slot);
-  const double reach = detail::reach(bodies, slot);
+  const double radius = detail::radius_with_sensors(bodies, slot);
   const bool guided = moved == detail::MovedBy::itself;
-  const bool owned = moved == detail::MovedBy::others || (guided && reach <= division.largest_guided);
+  const bool owned = moved == detail::MovedBy::others || (guided && radius <= division.largest_guided);
   // A body without an owner stays known to the same domains, so its radius counts.
-  division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
+  division.find_knowers(place, owned ? 0 : guided ? never : radius, knowers);
   return owned ? static_cast<DomainIndex>(division.partition.cell_of(place)) : Division::nobody;
 }
 
@@ -210,10 +210,10 @@ double largest_guided(const Bodies<Motion>& bodies, const Scripts<Motion>& scrip
   for (const BodySlot slot : slots) {
     const MovedBy moved = moved_by(bodies, scripts, slot);
     if (moved == MovedBy::others) largest_moved[0] = std::max(largest_moved[0], bodies[slot].bounding_radius);
-    if (moved == MovedBy::itself) guided.push_back(reach(bodies, slot));
+    if (moved == MovedBy::itself) guided.push_back(radius_with_sensors(bodies, slot));
   }
   team.combine({}, largest_moved);
-  const auto larger = [&](double reach) { return reach > largest_moved[0]; };
+  const auto larger = [&](double radius) { return radius > largest_moved[0]; };
   std::array<std::uint64_t, 2> counts{static_cast<std::uint64_t>(std::ranges::count_if(guided, larger)), slots.size()};
   team.combine(counts, {});
   return largest_moved[0] > 0 && counts[0] <= std::max(few, counts[1] / one_in) ? largest_moved[0] : never;
@@ -238,7 +238,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
   for (const BodySlot slot : slots) {
     const auto moved = detail::moved_by(bodies, scripts, slot);
     if (moved == detail::MovedBy::nothing) continue;
-    if (moved == detail::MovedBy::itself && detail::reach(bodies, slot) > largest_guided) continue;
+    if (moved == detail::MovedBy::itself && detail::radius_with_sensors(bodies, slot) > largest_guided) continue;
     const auto& path = bodies.path(slot);
     const Eigen::Vector3d& place = places.emplace_back(place_at(path, now));
     farthest = std::max(farthest, place.cwiseAbs().maxCoeff());

@@ -150,7 +150,7 @@ void Domain<Motion>::run(double until) {
 template <class Motion>
 void Domain<Motion>::follow(Followed& body, double until) {
   const StaticBox swept = swept_place(path_of(body.motion), body.since, until);
-  report_.overshoot = std::max(report_.overshoot, reach_outside(swept, division_.partition.cell(index_)));
+  report_.overshoot = std::max(report_.overshoot, farthest_outside(swept, division_.partition.cell(index_)));
   for (const std::uint32_t place : strangers_[body.strangers]) {
     NeighbourDomain& other = neighbours_[place];
     other.nearest = std::min(other.nearest, outside(swept, other.cell));

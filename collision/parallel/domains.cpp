@@ -132,9 +132,9 @@ std::span<const MotionChange<Motion>> Domains<Motion>::changes_of(DomainIndex do
 template <class Motion>
 double Domains<Motion>::halo_used(const Domain<Motion>& domain, double nearest_stranger) const {
   const double nearest = std::min(domain.report().nearest_wrong, nearest_stranger);
-  const double reach = domain.report().overshoot + 2 * division_->greatest_radius + division_->margin();
-  if (!(reach <= division_->halo && nearest > reach)) return 2;
-  return std::max(0.0, 1 - (nearest - reach) / division_->room());
+  const double needed = domain.report().overshoot + 2 * division_->greatest_radius + division_->margin();
+  if (!(needed <= division_->halo && nearest > needed)) return 2;
+  return std::max(0.0, 1 - (nearest - needed) / division_->room());
 }
 
 template <class Motion>

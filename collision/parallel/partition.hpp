@@ -25,7 +25,7 @@ inline double outside(const Eigen::Vector3d& place, const StaticBox& cell) {
 }
 
 /// How far outside a cell the farthest point of a box is.
-inline double reach_outside(const StaticBox& box, const StaticBox& cell) {
+inline double farthest_outside(const StaticBox& box, const StaticBox& cell) {
   return std::max({0.0, (cell.min - box.min).maxCoeff(), (box.max - cell.max).maxCoeff()});
 }
 

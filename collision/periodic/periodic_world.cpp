@@ -135,7 +135,7 @@ BodyId PeriodicWorld<Degree>::add_body(const Description& description) {
                   .crossings = -into,
                   .orientation = {q.x(), q.y(), q.z(), q.w()}};
   ++size_;
-  if (radius > greatest_radius_) grow_reach(radius);
+  if (radius > greatest_radius_) note_largest(radius);
   find_zones(reals_[slot]);
   update_place(reals_[slot]);
   return id_of(slot);

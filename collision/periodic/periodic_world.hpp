@@ -208,7 +208,7 @@ class PeriodicWorld final : private WorldListener<Degree> {
   std::int64_t periods_into_box(double x, int axis) const;
   Offset way_into_box(const Motion& motion) const;
   void require_room(double radius) const;
-  void grow_reach(double radius);
+  void note_largest(double radius);
   void find_zones(Real& body);
   void find_layer_above(Real& body);
   bool correct(Real& body, int which);

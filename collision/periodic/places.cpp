@@ -82,7 +82,7 @@ void PeriodicWorld<Degree>::require_room(double radius) const {
 
 /// There is a body that is larger than all before it: all need their images sooner. Precondition: there is room for it.
 template <int Degree>
-void PeriodicWorld<Degree>::grow_reach(double radius) {
+void PeriodicWorld<Degree>::note_largest(double radius) {
   greatest_radius_ = radius;
   slack_ = slack_in_radii * radius;
   for (int axis = 0; axis < 3; ++axis) {

@@ -63,10 +63,10 @@ std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double 
   });
   const auto counts = [&](BodyId id) { return std::binary_search(bodies.begin(), bodies.end(), id); };
   std::vector<NearPair> near;
-  const Vector3d reach = Vector3d::Constant(distance + offset);
+  const Vector3d room = Vector3d::Constant(distance + offset);
   for (const BodyId a : bodies) {
     const PathOf<Motion>& path = path_of(world.motion(a));
-    world.visit_swept(box_around(path, Vector3d(-reach), reach), until, [&](BodyId b) {
+    world.visit_swept(box_around(path, Vector3d(-room), room), until, [&](BodyId b) {
       if (!(a < b) || !counts(b)) return;
       const Approach approach = closest_approach(path, path_of(world.motion(b)), now, until);
       if (approach.distance < distance) near.push_back({{a, b}, approach});

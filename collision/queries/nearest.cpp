@@ -21,9 +21,9 @@ class Surroundings {
       : world_(world), low_(low), high_(high), filter_(filter) {}
 
   /// Those whose volumes are no farther than a length in any coordinate.
-  std::vector<BodyId> within(double reach) const {
+  std::vector<BodyId> within(double length) const {
     std::vector<BodyId> bodies;
-    const Vector3d room = Vector3d::Constant(reach);
+    const Vector3d room = Vector3d::Constant(length);
     world_.visit_overlapping(low_ - room, high_ + room, [&](BodyId id) {
       if (detail::accepts(filter_, id)) bodies.push_back(id);
     });
@@ -38,21 +38,21 @@ class Surroundings {
     if (world_.size() <= count) return infinity;
     const double size = std::max(low_.cwiseAbs().maxCoeff(), high_.cwiseAbs().maxCoeff());
     if (!(size < infinity)) return infinity;
-    double reach = 0x1p-6 * (size > 0 ? size : 1);
-    std::size_t there = within(reach).size();
+    double length = 0x1p-6 * (size > 0 ? size : 1);
+    std::size_t there = within(length).size();
     if (there < count) {
       for (int i = 0; i < most_steps; ++i) {
-        reach *= step;
-        if (within(reach).size() >= count) return reach;
+        length *= step;
+        if (within(length).size() >= count) return length;
       }
       return infinity;
     }
     for (int i = 0; i < most_steps && there > 4 * count + 16; ++i) {
-      there = within(reach / step).size();
+      there = within(length / step).size();
       if (there < count) break;
-      reach /= step;
+      length /= step;
     }
-    return reach;
+    return length;
   }
 
  private:
@@ -70,18 +70,18 @@ bool nearer(const NearBody& a, const NearBody& b) {
 template <class Motion, class Measure>
 std::vector<NearBody> nearest_by(const Surroundings<Motion>& surroundings, std::size_t count, const Measure& measure) {
   if (count == 0) return {};
-  const auto measured = [&](double reach) {
+  const auto measured = [&](double length) {
     std::vector<NearBody> bodies;
-    for (const BodyId id : surroundings.within(reach)) bodies.push_back(measure(id));
+    for (const BodyId id : surroundings.within(length)) bodies.push_back(measure(id));
     std::sort(bodies.begin(), bodies.end(), nearer);
     if (bodies.size() > count) bodies.resize(count);
     return bodies;
   };
-  const double reach = surroundings.enough(count);
-  std::vector<NearBody> bodies = measured(reach);
+  const double length = surroundings.enough(count);
+  std::vector<NearBody> bodies = measured(length);
   // What is not in that box is farther than its half side; but not all in it are nearer than that.
   constexpr double roundings = 1 + 0x1p-20;
-  if (bodies.size() == count && bodies.back().distance * roundings > reach) {
+  if (bodies.size() == count && bodies.back().distance * roundings > length) {
     bodies = measured(bodies.back().distance * roundings);
   }
   return bodies;

@@ -5,6 +5,7 @@
 #include "collision/motions.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/world.hpp"
 
 #include <Eigen/Core>
@@ -14,7 +15,6 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::collision::detail {
@@ -55,10 +55,10 @@ PlacedShape turned_shape(const PlacedShape& shape, const certificates::RigidMoti
 }
 
 /// A mesh that bends, as it is at t and stays.
-inline Shape bent_shape(const BendingMesh& mesh, double t) {
+inline Shape bent_shape(const MeshScript& script, double t) {
   MeshScript::Keyframe now{0, {}};
-  for (std::size_t i = 0; i < mesh.script->vertices(); ++i) now.positions.push_back(mesh.script->position(i, t));
-  const auto triangles = mesh.script->triangles();
+  for (std::size_t i = 0; i < script.vertices(); ++i) now.positions.push_back(script.position(i, t));
+  const auto triangles = script.triangles();
   return BendingMesh{
       std::make_shared<const MeshScript>(std::vector<MeshScript::Keyframe>{std::move(now)},
                                          std::vector<Mesh::Triangle>(triangles.begin(), triangles.end()))};
@@ -69,9 +69,7 @@ StandingBody standing_body(const BasicWorld<Motion>& world, BodyId id) {
   const double t = world.now();
   const Motion& motion = world.motion(id);
   StandingBody body{turned_shape(world.shape(id), motion, t), path_of(motion).position(t)};
-  if (const auto* const bending = std::get_if<BendingMesh>(&body.shape.shape)) {
-    body.shape.shape = bent_shape(*bending, t);
-  }
+  if (const MeshScript* const script = script_of(body.shape.shape)) body.shape.shape = bent_shape(*script, t);
   return body;
 }
 

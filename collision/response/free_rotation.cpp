@@ -72,7 +72,7 @@ FreeRotation::FreeRotation(const PrincipalInertia& inertia, const RotationState&
   const Vector3d unit_rates = inverse_moments_.cwiseProduct(momentum_[0]);
   steady_ = norm(cross(momentum_[0], unit_rates)) <= roundings * norm(momentum_[0]) * norm(unit_rates);
   quaternion_[0] = state.orientation.coeffs();
-  reach_ = in_closed_form() ? never : state.time;
+  valid_until_ = in_closed_form() ? never : state.time;
 }
 
 double FreeRotation::size(std::size_t term) const {
@@ -85,7 +85,7 @@ void FreeRotation::expand(double wanted) {
     return;
   }
   constexpr double left_out = 0x1p-60;
-  constexpr double greatest = 0x1p200;  // of a coefficient, lest the next overflow: fewer terms, and a shorter reach
+  constexpr double greatest = 0x1p200;  // of a coefficient, lest the next overflow: fewer terms, and a shorter time
   const Vector3d& n = inverse_moments_;
   const Vector3d differences(n[2] - n[1], n[0] - n[2], n[1] - n[0]);
   double span = std::min(wanted * rate_, 1.0);
@@ -116,7 +116,7 @@ void FreeRotation::expand(double wanted) {
     return last * size(terms_ - 1) <= left_out && last * span * size(terms_) <= left_out;
   };
   while (!converges()) span /= 2;
-  reach_ = state_.time + span / rate_;
+  valid_until_ = state_.time + span / rate_;
 }
 
 FreeRotation::TopSpins FreeRotation::top_spins() const {
@@ -163,9 +163,9 @@ Quaterniond orientation_at(const PrincipalInertia& inertia, const RotationState&
   for (;;) {
     FreeRotation rotation(inertia, reached);
     rotation.expand(t - reached.time);
-    if (t <= rotation.reach() || !(rotation.reach() > reached.time)) return rotation.orientation(t);
-    reached.orientation = rotation.orientation(rotation.reach());
-    reached.time = rotation.reach();
+    if (t <= rotation.valid_until() || !(rotation.valid_until() > reached.time)) return rotation.orientation(t);
+    reached.orientation = rotation.orientation(rotation.valid_until());
+    reached.time = rotation.valid_until();
   }
 }
 

@@ -62,8 +62,8 @@ class FreeRotation {
   void expand(double span);
   /// The time up to which the orientation is known. Of tops, and of bodies that turn about a principal axis, that is
   /// `never`.
-  double reach() const { return reach_; }
-  /// From the principal axes to those of the world. Precondition: t is from the state's time to reach().
+  double valid_until() const { return valid_until_; }
+  /// From the principal axes to those of the world. Precondition: t is from the state's time to valid_until().
   Eigen::Quaterniond orientation(double t) const;
 
   /// Whether the body turns about a principal axis, up to what roundings may have made of its angular momentum: then
@@ -89,7 +89,7 @@ class FreeRotation {
 
   const PrincipalInertia& inertia_;
   const RotationState& state_;
-  double reach_;
+  double valid_until_;
   double rate_ = 1;                  ///< the unit of rates, a power of two, rad/s
   Eigen::Vector3d own_momentum_;     ///< at the state's time, in principal axes
   Eigen::Vector3d inverse_;          ///< of the moments

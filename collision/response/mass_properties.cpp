@@ -2,9 +2,8 @@
 
 #include "collision/precise_vector.hpp"
 #include "collision/response/inertia.hpp"
-#include "collision/shapes/compound.hpp"
-#include "collision/shapes/mesh.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 #include "collision/shapes/solid_integrals.hpp"
 #include "collision/vectors.hpp"
 
@@ -70,44 +69,7 @@ MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, double 
   return result;
 }
 
-MassProperties solid(double mass, const Vector3d& moments) {
-  return {mass, Vector3d::Zero(), Matrix3d(moments.asDiagonal())};
-}
-
-MassProperties of(const Sphere& ball, double mass) {
-  return solid(mass, Vector3d::Constant(0.4 * mass * (ball.radius * ball.radius)));
-}
-
-MassProperties of(const Box& box, double mass) {
-  const Vector3d squares = box.half_extents.cwiseProduct(box.half_extents);
-  return solid(mass, Vector3d(mass * (squares[1] + squares[2]) / 3, mass * (squares[2] + squares[0]) / 3,
-                              mass * (squares[0] + squares[1]) / 3));
-}
-
-/// A cylinder and two halves of a ball, whose centres of mass are 3/8 of the radius from where they are cut.
-MassProperties of(const Capsule& capsule, double mass) {
-  const double r = capsule.radius, h = capsule.half_length;
-  const double of_cylinder = mass * (3 * h) / (3 * h + 2 * r);
-  const double of_ball = mass * (2 * r) / (3 * h + 2 * r);
-  const double ball = 0.4 * (r * r);
-  const double across = of_cylinder * (r * r / 4 + h * h / 3) + of_ball * (ball + h * h + 0.75 * (h * r));
-  const double along = of_cylinder * (r * r / 2) + of_ball * ball;
-  return solid(mass, Vector3d(across, across, along));
-}
-
-MassProperties of(const MeshShape& shape, double mass) {
-  return of_integrals("mesh", solid_in("mesh", *shape.mesh), shape.scale, mass);
-}
-
-MassProperties of(const ConvexHull& hull, double mass) {
-  return of_integrals("hull", solid_in("hull", *hull.polytope->surface()), 1, mass);
-}
-
-MassProperties of(const HalfSpace&, double) {
-  throw std::invalid_argument("mass_properties: a half-space has no mass");
-}
-
-/// A part of a compound.
+/// A part of a compound, a hull or a mesh.
 struct SolidPart {
   const char* kind;
   SolidIntegrals integrals;
@@ -115,16 +77,14 @@ struct SolidPart {
 };
 
 SolidPart solid_part(const Shape& shape) {
-  const auto* const hull = std::get_if<ConvexHull>(&shape);
-  const char* const kind = hull ? "hull" : "mesh";
-  const Mesh& mesh = hull ? *hull->polytope->surface() : *std::get<MeshShape>(shape).mesh;
-  const SolidIntegrals& sum = solid_in(kind, mesh);
+  const char* const kind = kind_name(shape);
+  const SolidIntegrals& sum = solid_in(kind, *triangles_of(shape));
   return {kind, sum, (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
 }
 
 /// Parts of one density, by the theorem of parallel axes. What cancels where parts are about each other, the sum of
 /// their places, is summed up in double-doubles.
-MassProperties of(const Compound& whole, double mass) {
+MassProperties of_parts(const Compound& whole, double mass) {
   const auto shapes = whole.parts->parts();
   const auto of_each_part = [&](const auto& make) {
     std::vector<std::decay_t<decltype(make(std::size_t{0}))>> made;
@@ -155,16 +115,26 @@ MassProperties of(const Compound& whole, double mass) {
   return result;
 }
 
-MassProperties of(const BendingMesh&, double) {
-  throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
-}
-
 }  // namespace
 
 MassProperties mass_properties(const Shape& shape, double mass) {
   require_size(mass, "mass");
   place(shape, Eigen::Quaterniond::Identity());
-  return std::visit([&](const auto& each) { return of(each, mass); }, shape);
+  return ask_kind(shape, [&](auto kind, const auto& each) -> MassProperties {
+    using Kind = std::decay_t<decltype(each)>;
+    if constexpr (requires { kind.moments(each, mass); }) {
+      return {mass, Vector3d::Zero(), Matrix3d(kind.moments(each, mass).asDiagonal())};
+    } else if constexpr (std::is_same_v<Kind, Compound>) {
+      return of_parts(each, mass);
+    } else if constexpr (std::is_same_v<Kind, BendingMesh>) {
+      throw std::invalid_argument("shape: a mesh that bends has no mass properties of its own");
+    } else if constexpr (std::is_same_v<Kind, HalfSpace>) {
+      throw std::invalid_argument("mass_properties: a half-space has no mass");
+    } else {
+      const MeshShape surface = surface_of(shape);
+      return of_integrals(kind.name, solid_in(kind.name, *surface.mesh), surface.scale, mass);
+    }
+  });
 }
 
 /// Twice, since coordinates of parts that are far from the origin are rounded more coarsely.

@@ -39,7 +39,7 @@ double end_of_piece(const PrincipalInertia& inertia, FreeRotation& rotation, dou
   const auto span_for = [&](double acceleration) { return std::sqrt(8 * bulge / (spared * acceleration)); };
   const double span = std::min(span_for(rotation.acceleration(t)), turn);
   if (!top) rotation.expand(span);
-  double end = std::max(std::min(t + span, rotation.reach()), next_up(t));
+  double end = std::max(std::min(t + span, rotation.valid_until()), next_up(t));
   while (!top && end > next_up(t)) {  // The acceleration of a top does not grow.
     const double greatest = std::max(rotation.acceleration(t + (end - t) / 2), rotation.acceleration(end));
     if (end - t <= span_for(greatest)) break;

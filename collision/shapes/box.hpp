@@ -1,6 +1,7 @@
 // Boxes as shapes.
 #pragma once
 
+#include "collision/shapes/rounded_box.hpp"
 #include "collision/shapes/shape_kind.hpp"
 #include "collision/vectors.hpp"
 
@@ -45,10 +46,28 @@ struct ShapeKind<Box> {
 
   static SupportingFeature support(const Box&, const PlacedShape& placed, const Eigen::Vector3d& direction);
 
-  static RoundedCore core(const Box& box, const PlacedShape& placed) {
-    RoundedCore core;
-    for (int d = 0; d < 3; ++d) core.generators.push_back({placed.rotation.col(d), box.half_extents[d]});
-    return core;
+  static RoundedBox rounded_box(const Box& box) { return {box.half_extents, 0}; }
+
+  static Eigen::Vector3d moments(const Box& box, double mass) {
+    const Eigen::Vector3d squares = box.half_extents.cwiseProduct(box.half_extents);
+    return {mass * (squares[1] + squares[2]) / 3, mass * (squares[2] + squares[0]) / 3,
+            mass * (squares[0] + squares[1]) / 3};
+  }
+
+  /// The twelve edges.
+  template <class Pen>
+  static void outline(const Box& box, Pen& pen) {
+    for (int d = 0; d < 3; ++d) {
+      for (const double u : {-1.0, 1.0}) {
+        for (const double v : {-1.0, 1.0}) {
+          Eigen::Vector3d from;
+          from[d] = -1, from[(d + 1) % 3] = u, from[(d + 2) % 3] = v;
+          Eigen::Vector3d to = from;
+          to[d] = 1;
+          pen.line(from.cwiseProduct(box.half_extents), to.cwiseProduct(box.half_extents));
+        }
+      }
+    }
   }
 
   template <class Archive>

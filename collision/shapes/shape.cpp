@@ -1,14 +1,7 @@
 #include "collision/shapes/shape.hpp"
 
-#include "collision/shapes/bending_mesh.hpp"
-#include "collision/shapes/box.hpp"
-#include "collision/shapes/capsule.hpp"
-#include "collision/shapes/compound.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/half_space.hpp"
-#include "collision/shapes/mesh_shape.hpp"
 #include "collision/shapes/number_text.hpp"
-#include "collision/shapes/sphere.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/LU>
@@ -16,7 +9,6 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
 namespace kds::collision {
 namespace {
@@ -27,13 +19,6 @@ using detail::rotation_margin;
 
 /// How far from 1 the norm of an orientation may be; scene files carry few digits. The quaternion is normalised.
 constexpr double quaternion_tolerance = 1e-6;
-
-/// Calls ask(kind, shape) with the ShapeKind of what the shape is.
-template <class Ask>
-auto of_kind(const Shape& shape, const Ask& ask) {
-  return std::visit([&](const auto& each) { return ask(detail::ShapeKind<std::decay_t<decltype(each)>>{}, each); },
-                    shape);
-}
 
 [[noreturn]] void refuse(const char* kind, const char* function) {
   throw std::logic_error(std::string(function) + ": asked of a " + kind);
@@ -82,24 +67,24 @@ PlacedShape place_turned(const Shape& shape, const Eigen::Matrix3d& rotation) {
   PlacedShape placed;
   placed.shape = shape;
   placed.rotation = rotation;
-  of_kind(shape, [&](auto kind, const auto& each) { kind.place(each, placed); });
+  ask_kind(shape, [&](auto kind, const auto& each) { kind.place(each, placed); });
   return placed;
 }
 
 bool is_placed(const PlacedShape& shape) {
   const PlacedShape again = place_turned(shape.shape, shape.rotation);
-  const bool has_axes = of_kind(shape.shape, [](auto kind, const auto&) { return kind.has_half_axes; });
+  const bool has_axes = ask_kind(shape.shape, [](auto kind, const auto&) { return kind.has_half_axes; });
   return again.shape.index() == shape.shape.index() && (!has_axes || again.half_axes == shape.half_axes) &&
          again.low == shape.low && again.high == shape.high && again.bounding_radius == shape.bounding_radius &&
          detail::same_parts(again, shape);
 }
 
 std::array<double, 2> extent(const PlacedShape& shape, const Eigen::Vector3d& direction) {
-  return of_kind(shape.shape, [&](auto kind, const auto& each) { return kind.extent(each, shape, direction); });
+  return ask_kind(shape.shape, [&](auto kind, const auto& each) { return kind.extent(each, shape, direction); });
 }
 
 SupportingFeature supporting_feature(const PlacedShape& shape, const Eigen::Vector3d& direction) {
-  return of_kind(shape.shape, [&](auto kind, const auto& each) -> SupportingFeature {
+  return ask_kind(shape.shape, [&](auto kind, const auto& each) -> SupportingFeature {
     if constexpr (requires { kind.support(each, shape, direction); }) {
       return kind.support(each, shape, direction);
     } else {
@@ -109,9 +94,14 @@ SupportingFeature supporting_feature(const PlacedShape& shape, const Eigen::Vect
 }
 
 RoundedCore rounded_core(const PlacedShape& shape) {
-  return of_kind(shape.shape, [&](auto kind, const auto& each) -> RoundedCore {
-    if constexpr (requires { kind.core(each, shape); }) {
-      return kind.core(each, shape);
+  return ask_kind(shape.shape, [&](auto kind, const auto& each) -> RoundedCore {
+    if constexpr (requires { kind.rounded_box(each); }) {
+      const RoundedBox box = kind.rounded_box(each);
+      RoundedCore core{{}, box.radius};
+      for (int d = 0; d < 3; ++d) {
+        if (box.half_extents[d] > 0) core.generators.push_back({shape.rotation.col(d), box.half_extents[d]});
+      }
+      return core;
     } else {
       refuse(kind.name, "rounded_core");
     }
@@ -119,11 +109,11 @@ RoundedCore rounded_core(const PlacedShape& shape) {
 }
 
 const char* kind_name(const Shape& shape) {
-  return of_kind(shape, [](auto kind, const auto&) { return kind.name; });
+  return ask_kind(shape, [](auto kind, const auto&) { return kind.name; });
 }
 
 Eigen::Vector3d measures(const Shape& shape) {
-  return of_kind(shape, [](auto kind, const auto& each) { return kind.measures(each); });
+  return ask_kind(shape, [](auto kind, const auto& each) { return kind.measures(each); });
 }
 
 bool has_mesh(const Shape& shape) {

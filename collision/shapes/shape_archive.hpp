@@ -1,15 +1,8 @@
 // Placed shapes in snapshots.
 #pragma once
 
-#include "collision/shapes/bending_mesh.hpp"
-#include "collision/shapes/box.hpp"
-#include "collision/shapes/capsule.hpp"
-#include "collision/shapes/compound.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/half_space.hpp"
-#include "collision/shapes/mesh_shape.hpp"
 #include "collision/shapes/shape.hpp"
-#include "collision/shapes/sphere.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -32,9 +32,9 @@ inline void grow(PlacedShape& placed, double margin) {
 /// - `place(shape, placed)`: checks the numbers of the shape, naming the member that is wrong in std::invalid_argument,
 ///   and fills in the bounds and axes of `placed`, whose shape and rotation are there already;
 /// - `extent(shape, placed, direction)`: see extent() in shape.hpp;
-/// - `support(shape, placed, direction)`: see supporting_feature() in support.hpp; none for meshes,
-///   half-spaces and compounds;
-/// - `core(shape, placed)`: see rounded_core() in shape.hpp; none for meshes, hulls, half-spaces and compounds;
+/// - `support(shape, placed, direction)`: see supporting_feature() in support.hpp; of convex solids;
+/// - `rounded_box(shape)`, see rounded_box.hpp; `moments(shape, mass)`, of inertia, about the axes through the centre;
+///   `outline(shape, pen)`, which draws with the pen.line() and pen.arc() of drawing/outline.cpp: of rounded boxes;
 /// - `measures(shape)`: see measures() in shape.hpp;
 /// - `archive(archive, shape, placed, meshes)`: for snapshots, the numbers of the shape, and what is not a function of
 ///   them and of the rotation to the last bit. A mesh is named by its number among the meshes of the snapshot.

@@ -1,6 +1,7 @@
 // Balls as shapes.
 #pragma once
 
+#include "collision/shapes/rounded_box.hpp"
 #include "collision/shapes/shape_kind.hpp"
 #include "collision/vectors.hpp"
 
@@ -29,7 +30,20 @@ struct ShapeKind<Sphere> {
     return {{}, {sphere.radius * direction}};
   }
 
-  static RoundedCore core(const Sphere& sphere, const PlacedShape&) { return {{}, sphere.radius}; }
+  static RoundedBox rounded_box(const Sphere& sphere) { return {Eigen::Vector3d::Zero(), sphere.radius}; }
+
+  static Eigen::Vector3d moments(const Sphere& sphere, double mass) {
+    return Eigen::Vector3d::Constant(0.4 * mass * (sphere.radius * sphere.radius));
+  }
+
+  /// Three great circles.
+  template <class Pen>
+  static void outline(const Sphere& sphere, Pen& pen) {
+    for (int d = 0; d < 3; ++d) {
+      pen.arc(Eigen::Vector3d::Zero(), sphere.radius * Eigen::Vector3d::Unit(d),
+              sphere.radius * Eigen::Vector3d::Unit((d + 1) % 3), 4);
+    }
+  }
 
   template <class Archive>
   static void archive(Archive& archive, Sphere& sphere, PlacedShape&, const NumberedMeshes&) {

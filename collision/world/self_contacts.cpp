@@ -3,17 +3,17 @@
 #include "collision/narrow_phase/kept_rotation.hpp"
 #include "collision/narrow_phase/self_contact.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
 
 #include <string>
-#include <variant>
 
 namespace kds::collision {
 namespace {
 
-const MeshScript& script_of(const PlacedShape& shape) { return *std::get<BendingMesh>(shape.shape).script; }
+const MeshScript& script_in(const PlacedShape& shape) { return *script_of(shape.shape); }
 
 }  // namespace
 
@@ -21,7 +21,7 @@ template <class Motion>
 bool SelfContacts<Motion>::enter(BodySlot slot) {
   if (!follows(slot)) return false;
   if (touching_.size() <= slot) touching_.resize(slot + std::size_t{1});
-  touching_[slot] = in_self_contact(script_of(*bodies_[slot].shape), clock_.now);
+  touching_[slot] = in_self_contact(script_in(*bodies_[slot].shape), clock_.now);
   find_next(slot);
   return touching_[slot];
 }
@@ -35,7 +35,7 @@ void SelfContacts<Motion>::remove(BodySlot slot) {
 template <class Motion>
 void SelfContacts<Motion>::find_next(BodySlot slot) {
   make_room(times_, bodies_.slots());
-  const MeshScript& script = script_of(*bodies_[slot].shape);
+  const MeshScript& script = script_in(*bodies_[slot].shape);
   const double time = touching_[slot] ? first_self_separation(script, clock_.now, clock_.horizon)
                                       : first_self_contact(script, clock_.now, clock_.horizon);
   if (time < never) {
@@ -57,7 +57,7 @@ typename SelfContacts<Motion>::Event SelfContacts<Motion>::take_next() {
 template <class Motion>
 Contact SelfContacts<Motion>::contact(BodySlot slot) const {
   const PlacedShape& shape = *bodies_[slot].shape;
-  Contact contact = self_contact_at(script_of(shape), clock_.now);
+  Contact contact = self_contact_at(script_in(shape), clock_.now);
   const Eigen::Matrix3d rotation = kept_rotation(shape, bodies_.motion(slot));
   contact.point = bodies_.path(slot).position(clock_.now) + placed_vertex(rotation, 1, contact.point);
   contact.normal = placed_vertex(rotation, 1, contact.normal);
@@ -75,7 +75,7 @@ template <class Motion>
 void SelfContacts<Motion>::audit(double t) const {
   for (BodySlot slot = 0; slot < touching_.size(); ++slot) {
     if (!follows(slot) || (times_.contains(slot) && times_.time(slot) <= t)) continue;
-    if (in_self_contact(script_of(*bodies_[slot].shape), t) == touching(slot)) continue;
+    if (in_self_contact(script_in(*bodies_[slot].shape), t) == touching(slot)) continue;
     throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) +
                        ": whether it touches itself is not known");
   }

@@ -1,11 +1,11 @@
 #include "io/pictures/body_surface.hpp"
 
-#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/mesh.hpp"
+#include "collision/shapes/shape_forms.hpp"
 
 #include <cmath>
 #include <numbers>
 #include <utility>
-#include <variant>
 
 namespace kds::io {
 namespace {
@@ -63,21 +63,17 @@ Surface mesh_surface(const Mesh& mesh) {
   return surface;
 }
 
+/// Of what is round: half of its length without the ends, in radii.
 double slenderness(const Shape& shape) {
-  const auto* const capsule = std::get_if<Capsule>(&shape);
-  return capsule ? capsule->half_length / capsule->radius : 0;
-}
-
-std::shared_ptr<const Mesh> triangles_of(const Shape& shape) {
-  const auto* const hull = std::get_if<ConvexHull>(&shape);
-  return hull ? hull->polytope->surface() : mesh_of(shape);
+  const auto box = rounded_box_of(shape);
+  return box && box->radius > 0 ? box->half_extents[2] / box->radius : 0;
 }
 
 }  // namespace
 
 Surface surface_of(const Shape& shape, const Roundness& roundness) {
   if (const auto triangles = triangles_of(shape)) return mesh_surface(*triangles);
-  return std::holds_alternative<Box>(shape) ? box_surface() : round_surface(slenderness(shape), roundness);
+  return rounding_radius(shape) > 0 ? round_surface(slenderness(shape), roundness) : box_surface();
 }
 
 Surface surface_of(const MeshScript& script) {
@@ -94,9 +90,8 @@ SurfaceKey surface_key(const Shape& shape) {
 }
 
 Vector3d surface_scale(const Shape& shape) {
-  if (std::holds_alternative<BendingMesh>(shape)) return Vector3d::Ones();
-  const Vector3d scale = measures(shape);
-  return std::holds_alternative<Capsule>(shape) ? Vector3d::Constant(scale[0]) : scale;
+  const double radius = rounding_radius(shape);
+  return radius > 0 ? Vector3d(Vector3d::Constant(radius)) : measures(shape);
 }
 
 void append_floats(std::vector<float>& to, const Vector3d& v) {

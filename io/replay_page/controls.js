@@ -136,7 +136,7 @@ function draw() {
   controls.update();
   // The sun goes with the viewer, so that no side is dark.
   sun.position.copy(camera.position).sub(centre).applyAxisAngle(camera.up, 0.6).add(centre);
-  sun.position.addScaledVector(camera.up, reach);
+  sun.position.addScaledVector(camera.up, sceneRadius);
   sun.target.position.copy(centre); sun.target.updateMatrixWorld();
   rim.position.copy(centre).multiplyScalar(2).sub(camera.position);
   rim.target.position.copy(centre); rim.target.updateMatrixWorld();

@@ -92,7 +92,7 @@ const shapeText = body => {
     : (body.frames ? "mesh that bends, " : "mesh, ") + number(data.meshes[body.shape].triangles.length / 3) + " triangles";
   return text + (body.fixed ? "; fixed" : "") + (body.sensor ? "; sensor" : "");
 };
-const vectorText = v => [v.x, v.y, v.z].map(x => (Math.abs(x) < 5e-7 * reach ? 0 : x).toPrecision(5)).join("  ");
+const vectorText = v => [v.x, v.y, v.z].map(x => (Math.abs(x) < 5e-7 * sceneRadius ? 0 : x).toPrecision(5)).join("  ");
 const timeText = t => (data.begin + t).toPrecision(7) + " s";
 
 /** Writes what there is to say of the chosen body at time t. */

@@ -17,7 +17,7 @@ const amber = [1, 0.72, 0.2], pale = [0.95, 0.95, 1], dim = [0.45, 0.62, 1];
 /** Shows the contacts of the time t and of `fade` before it: of the chosen body, or of all. */
 function mark(t, fade, shown) {
   let count = 0;
-  const length = 0.03 * reach;
+  const length = 0.03 * sceneRadius;
   const add = (time, values, colour) => {
     const [x, y, z, u, v, w] = values, strength = 1 - (t - time) / fade;
     // A cross in the plane of the contact, and the normal.

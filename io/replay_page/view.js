@@ -80,16 +80,16 @@ function boundsOfAll() {
 const bounds = boundsOfAll();
 const centre = bounds.getCenter(new THREE.Vector3());
 const extent = bounds.getSize(new THREE.Vector3());
-const reach = extent.length() / 2;
+const sceneRadius = extent.length() / 2;
 
-scene.fog = new THREE.Fog(0x0b0e13, 2 * reach, 7 * reach);
+scene.fog = new THREE.Fog(0x0b0e13, 2 * sceneRadius, 7 * sceneRadius);
 scene.add(new THREE.HemisphereLight(0xdfe9ff, 0x3a3630, 0.85));
 const sun = new THREE.DirectionalLight(0xfff4e2, 1.0);
 scene.add(sun);
 const rim = new THREE.DirectionalLight(0x6aa0ff, 0.35);
 scene.add(rim);
 
-const camera = new THREE.PerspectiveCamera(38, 1, reach / 200, reach * 40);
+const camera = new THREE.PerspectiveCamera(38, 1, sceneRadius / 200, sceneRadius * 40);
 let controls;
 let freeHeight = 1;   // the part of the window's height that title and bar leave free; the view is in its middle
 
@@ -99,7 +99,7 @@ function fit(fromWhere) {
   const back = from.clone(), right = new THREE.Vector3().crossVectors(camera.up, back).normalize();
   const above = new THREE.Vector3().crossVectors(back, right);
   const half = Math.tan(camera.fov * Math.PI / 360), tall = half * freeHeight * 0.96, wide = half * camera.aspect * 0.84;
-  let distance = reach / 10;
+  let distance = sceneRadius / 10;
   const corner = new THREE.Vector3();
   for (let k = 0; k < 8; ++k) {
     corner.set(k & 1 ? 0.5 : -0.5, k & 2 ? 0.5 : -0.5, k & 4 ? 0.5 : -0.5).multiply(extent);
@@ -120,8 +120,8 @@ function setUp(axis) {
   controls.enableDamping = true;
   controls.dampingFactor = 0.08;
   controls.rotateSpeed = 0.7;
-  controls.minDistance = reach / 50;
-  controls.maxDistance = reach * 12;
+  controls.minDistance = sceneRadius / 50;
+  controls.maxDistance = sceneRadius * 12;
   const from = new THREE.Vector3();
   from.setComponent(i, 0.34 * sign).setComponent((i + 1) % 3, -0.52).setComponent((i + 2) % 3, -0.8);
   fit(from);

@@ -6,7 +6,7 @@ namespace kds::io {
 
 void JsonNode::fail(const std::string& what) const { throw JsonError(path_.empty() ? "document" : path_, what); }
 
-const JsonNode& JsonNode::object(std::initializer_list<std::string_view> keys) const {
+const JsonNode& JsonNode::object(std::span<const std::string_view> keys) const {
   require(value_.is_object(), "must be an object");
   for (const auto& [key, child] : value_.items()) {
     if (std::find(keys.begin(), keys.end(), key) == keys.end()) at(key).fail("unknown key");

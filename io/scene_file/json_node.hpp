@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <initializer_list>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -25,7 +26,10 @@ class JsonNode {
   [[noreturn]] void fail(const std::string& what) const;
 
   /// Itself, an object with these keys only.
-  const JsonNode& object(std::initializer_list<std::string_view> keys) const;
+  const JsonNode& object(std::initializer_list<std::string_view> keys) const {
+    return object(std::span(keys.begin(), keys.size()));
+  }
+  const JsonNode& object(std::span<const std::string_view> keys) const;
 
   bool has(const char* key) const { return value_.contains(key); }
   JsonNode operator[](const std::string& key) const;  ///< of a key that must be there

@@ -1,15 +1,12 @@
 #include "io/scene_file/pivot.hpp"
 
-#include "collision/shapes/compound.hpp"
-#include "collision/shapes/convex_hull.hpp"
-#include "collision/shapes/mesh.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "collision/narrow_phase/convex_core.hpp"
+#include "collision/shapes/shape_kinds.hpp"
 
 #include <exception>
 #include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 namespace kds::io {
@@ -18,21 +15,10 @@ namespace {
 using namespace kds::collision;
 using Eigen::Vector3d;
 
-/// Vertex i is on the positive side of axis d where bit d of i is set.
-Shape moved(const Box& box, const Vector3d& by) {
-  std::vector<Vector3d> corners;
-  for (unsigned i = 0; i < 8; ++i) {
-    Vector3d corner = box.half_extents;
-    for (unsigned d = 0; d < 3; ++d) {
-      if (!(i >> d & 1)) corner[static_cast<Eigen::Index>(d)] *= -1;
-    }
-    corners.push_back(corner + by);
-  }
-  return convex_hull(std::move(corners));
-}
-
-Shape moved(const ConvexHull& hull, const Vector3d& by) {
-  std::vector<Vector3d> points(hull.polytope->points().begin(), hull.polytope->points().end());
+/// The corners of a box are numbered as in ConvexCore; of what is rounded no hull can be made.
+std::optional<Shape> moved(const ConvexCore& core, const Vector3d& by) {
+  if (core.radius() > 0) return std::nullopt;
+  std::vector<Vector3d> points(core.points().begin(), core.points().end());
   for (Vector3d& x : points) x += by;
   return convex_hull(std::move(points));
 }
@@ -53,9 +39,16 @@ Shape moved(const Compound& compound, const Vector3d& by) {
   return kds::collision::detail::compound_of_points(std::move(parts));
 }
 
-template <class Other>
-std::optional<Shape> moved(const Other&, const Vector3d&) {
-  return std::nullopt;
+std::optional<Shape> moved(const Shape& shape, const Vector3d& by) {
+  using Moved = std::optional<Shape>;
+  const ByForm move{
+      [&](const RoundedBox&) { return moved(ConvexCore(shape), by); },
+      [&](const Polytope&) { return moved(ConvexCore(shape), by); },
+      [&](const MeshShape& mesh) { return Moved(moved(mesh, by)); },
+      [&](const Compound& compound) { return Moved(moved(compound, by)); },
+      [&](const auto&) { return Moved(); },
+  };
+  return ask_form(shape, move);
 }
 
 }  // namespace
@@ -76,7 +69,7 @@ std::optional<Vector3d> read_pivot(const JsonNode& motion) {
 Shape about_pivot(const Shape& shape, const Vector3d& pivot, const JsonNode& node) {
   std::optional<Shape> about;
   try {
-    about = std::visit([&](const auto& each) { return std::optional<Shape>(moved(each, -pivot)); }, shape);
+    about = moved(shape, -pivot);
     if (about) place(*about, Eigen::Quaterniond::Identity());
   } catch (const std::exception& error) {
     node.fail(std::string("the shape cannot be placed about it: ") + error.what());

@@ -7,14 +7,27 @@
 #include "io/scene_file/body_checks.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 namespace kds::io {
 namespace {
 
 using kds::collision::Shape;
 using Meshes = std::vector<SceneMesh>;
+
+/// A kind of shape in scenes.
+struct ShapeReader {
+  const char* key;
+  Shape (*read)(const JsonNode& node, const Meshes& meshes);
+  bool part;  ///< whether it may be a part of a compound
+};
+std::span<const ShapeReader> shape_readers();
 
 Shape read_sphere(const JsonNode& node, const Meshes&) {
   return kds::collision::Sphere{node["sphere"].object({"radius"})["radius"].positive()};
@@ -81,8 +94,9 @@ Shape read_mesh_shape(const JsonNode& node, const Meshes& meshes) {
 kds::collision::CompoundPart read_part(const JsonNode& node, const Meshes& meshes) {
   node.object({"shape", "position", "orientation"});
   const JsonNode shape = node["shape"];
-  for (const char* const kind : {"sphere", "capsule", "half_space", "compound"}) {
-    if (shape.has(kind)) shape[kind].fail("cannot be a part of a compound: boxes, hulls and meshes can");
+  for (const ShapeReader& each : shape_readers()) {
+    if (each.part || !shape.has(each.key)) continue;
+    shape[each.key].fail("cannot be a part of a compound: boxes, hulls and meshes can");
   }
   kds::collision::CompoundPart part{read_shape(shape, meshes)};
   if (node.has("position")) part.position = node["position"].vector();
@@ -107,16 +121,28 @@ Shape read_compound(const JsonNode& node, const Meshes& meshes) {
   }
 }
 
-struct ShapeReader {
-  const char* key;
-  Shape (*read)(const JsonNode& node, const Meshes& meshes);
-};
-constexpr const char* one_shape =
-    "must have exactly one of \"sphere\", \"box\", \"mesh\", \"capsule\", \"hull\", \"half_space\" and \"compound\"";
-constexpr ShapeReader shape_readers[] = {{"sphere", read_sphere},    {"box", read_box},
-                                         {"mesh", read_mesh_shape},  {"capsule", read_capsule},
-                                         {"hull", read_hull},        {"half_space", read_half_space},
-                                         {"compound", read_compound}};
+std::span<const ShapeReader> shape_readers() {
+  static constexpr ShapeReader readers[] = {
+      {"sphere", read_sphere, false},     {"box", read_box, true},   {"mesh", read_mesh_shape, true},
+      {"capsule", read_capsule, false},   {"hull", read_hull, true}, {"half_space", read_half_space, false},
+      {"compound", read_compound, false},
+  };
+  return readers;
+}
+
+/// The reader of the only kind of which a node has the key.
+const ShapeReader& reader_of(const JsonNode& node) {
+  const auto readers = shape_readers();
+  const auto has = [&](const ShapeReader& each) { return node.has(each.key); };
+  const auto found = std::ranges::find_if(readers, has);
+  if (found != readers.end() && std::none_of(found + 1, readers.end(), has)) return *found;
+  std::string names;
+  for (const ShapeReader& each : readers) {
+    names += &each == &readers.front() ? "" : &each == &readers.back() ? " and " : ", ";
+    names += '"' + std::string(each.key) + '"';
+  }
+  node.fail("must have exactly one of " + names);
+}
 
 }  // namespace
 
@@ -141,16 +167,15 @@ std::string mesh_size_problem(const kds::collision::MeshShape& shape, bool scale
 }
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {
-  node.object({"sphere", "box", "mesh", "capsule", "hull", "half_space", "compound", "scale"});
-  const ShapeReader* found = nullptr;
-  for (const ShapeReader& each : shape_readers) {
-    if (!node.has(each.key)) continue;
-    if (found) node.fail(one_shape);
-    found = &each;
-  }
-  if (!found) node.fail(one_shape);
+  static const std::vector<std::string_view> keys = [] {
+    std::vector<std::string_view> all{"scale"};
+    for (const ShapeReader& each : shape_readers()) all.push_back(each.key);
+    return all;
+  }();
+  node.object(keys);
+  const ShapeReader& reader = reader_of(node);
   if (node.has("scale") && !node.has("mesh")) node["scale"].fail("is for meshes only");
-  return found->read(node, meshes);
+  return reader.read(node, meshes);
 }
 
 }  // namespace kds::io

@@ -17,7 +17,7 @@ namespace kds {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
-  this->wave().reach(*this, now);
+  this->wave().follow_up_to(*this, now);
   begin(now);
   if constexpr (detail::Inserts<Rule>) rule_.insert(id, repair_);
   finish(false, this->wave());
@@ -25,7 +25,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::inserted(Id id, double now) {
 
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::removing(Id id, double now) {
-  this->wave().reach(*this, now);
+  this->wave().follow_up_to(*this, now);
   begin(now);
   if constexpr (detail::Removes<Rule>) rule_.remove(id, repair_);
   finish(false, this->wave());
@@ -46,7 +46,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::changing(Id id, const Element& next
 template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::changed(Id id, double now) {
   if constexpr (is_outer) {
-    this->wave().reach(*this, now);
+    this->wave().follow_up_to(*this, now);
     begin(now);
     if constexpr (TakesUpMotions<Rule>) {
       rule_.change(id, repair_);

@@ -87,7 +87,7 @@ class Wave {
     waiting_.insert(at, &structure);
   }
   /// The structures follow that have been made before `structure`, and it itself.
-  void reach(const Follower& structure, double now) { advance(structure.number_, now, false); }
+  void follow_up_to(const Follower& structure, double now) { advance(structure.number_, now, false); }
 
  private:
   static constexpr std::uint64_t last = ~std::uint64_t{0};

@@ -22,8 +22,8 @@ template <int PathDegree>
 oracle::Polynomial expected(const BallSeparation<PathDegree>& balls) {
   const auto a = exact(balls.a);
   const auto b = exact(balls.b);
-  const auto reach = exact(balls.radius_a) + exact(balls.radius_b);
-  oracle::Polynomial f = oracle::Polynomial() - reach * reach;
+  const auto sum_of_radii = exact(balls.radius_a) + exact(balls.radius_b);
+  oracle::Polynomial f = oracle::Polynomial() - sum_of_radii * sum_of_radii;
   for (std::size_t d = 0; d < 3; ++d) f = f + (b[d] - a[d]) * (b[d] - a[d]);
   return f;
 }

@@ -38,7 +38,7 @@ oracle::Polynomial expected(const PlaneSeparation<PathDegree>& planes) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE_SIG("bodies are apart along an axis while the gap exceeds their reach", "[plane_separation]",
+TEMPLATE_TEST_CASE_SIG("bodies are apart along an axis while the gap exceeds their extents", "[plane_separation]",
                        ((int PathDegree), PathDegree), 1, 2) {
   const std::uint64_t seed = 110;
   CAPTURE(PathDegree, seed);
@@ -58,14 +58,14 @@ TEMPLATE_TEST_CASE_SIG("bodies are apart along an axis while the gap exceeds the
   }
 }
 
-TEST_CASE("an axis across which half axes vanish up to rounding has the exact reach", "[plane_separation]") {
+TEST_CASE("an axis across which half axes vanish up to rounding has the exact extent", "[plane_separation]") {
   const std::uint64_t seed = 111;
   CAPTURE(seed);
   Random random(seed);
   for (int round = 0; round < 300; ++round) {
     const auto a = random_path<1>(random, false, 0);
     const auto b = random_path<1>(random, false, 0);
-    // Half axes across the axis but for roundings: their reach cancels, and its sign is any.
+    // Half axes across the axis but for roundings: their extent cancels, and its sign is any.
     const Vector3d u = random_vector(random, false);
     const Vector3d v = random_vector(random, false);
     const Vector3d axis = u.cross(v);

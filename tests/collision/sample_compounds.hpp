@@ -15,8 +15,8 @@ inline ConvexHull wedge(double size) {
   return convex_hull({{-size, -size, -size}, {size, -size, -size}, {0, size, -size}, {0, 0, size}});
 }
 
-/// So many parts, within a cube of the half side `reach`, that may overlap.
-inline std::vector<CompoundPart> random_parts(Random& random, Parts kinds, std::size_t count, double reach = 1) {
+/// So many parts, within a cube of the half side `half_side`, that may overlap.
+inline std::vector<CompoundPart> random_parts(Random& random, Parts kinds, std::size_t count, double half_side = 1) {
   std::vector<CompoundPart> parts;
   for (std::size_t i = 0; i < count; ++i) {
     CompoundPart part;
@@ -28,10 +28,14 @@ inline std::vector<CompoundPart> random_parts(Random& random, Parts kinds, std::
         part.shape = Box{{x, y, size}};
         break;
       }
-      case 1: part.shape = wedge(size); break;
-      default: part.shape = MeshShape{random.one_in(2) ? tetrahedron() : ring(), size}; break;
+      case 1:
+        part.shape = wedge(size);
+        break;
+      default:
+        part.shape = MeshShape{random.one_in(2) ? tetrahedron() : ring(), size};
+        break;
     }
-    for (int d = 0; d < 3; ++d) part.position[d] = random.between(-reach, reach);
+    for (int d = 0; d < 3; ++d) part.position[d] = random.between(-half_side, half_side);
     if (!random.one_in(3)) {
       const double w = random.between(-1, 1), x = random.between(-1, 1), y = random.between(-1, 1);
       part.orientation = unit_quaternion(w, x, y, random.between(0.1, 1));
@@ -41,8 +45,8 @@ inline std::vector<CompoundPart> random_parts(Random& random, Parts kinds, std::
   return parts;
 }
 
-inline Compound random_compound(Random& random, Parts kinds, std::size_t count, double reach = 1) {
-  return compound(random_parts(random, kinds, count, reach));
+inline Compound random_compound(Random& random, Parts kinds, std::size_t count, double half_side = 1) {
+  return compound(random_parts(random, kinds, count, half_side));
 }
 
 /// A scene of SceneMaker in which every other body is a compound.
@@ -50,8 +54,7 @@ template <int Degree>
 Scene<Degree> compound_scene(Random& random, const SceneOptions& options, Parts kinds, int most_parts = 4) {
   Scene<Degree> scene = SceneMaker(random, options).scene<Degree>();
   for (std::size_t i = 0; i < scene.bodies.size(); i += 2) {
-    scene.bodies[i].shape =
-        random_compound(random, kinds, static_cast<std::size_t>(random.integer(1, most_parts)));
+    scene.bodies[i].shape = random_compound(random, kinds, static_cast<std::size_t>(random.integer(1, most_parts)));
   }
   return scene;
 }

@@ -187,14 +187,14 @@ TEST_CASE("stress: paths that touch with discriminant 0 and an ulp to either sid
   for (int round = 0; round < 30; ++round) {
     const double radius = random.integer(1, 64) / 16.0;
     const double other = random.integer(1, 64) / 16.0;
-    const double reach = radius + other;
-    for (const double distance : {next_down(reach), reach, next_up(reach)}) {
-      const bool meets = distance < reach;
+    const double sum_of_radii = radius + other;
+    for (const double distance : {next_down(sum_of_radii), sum_of_radii, next_up(sum_of_radii)}) {
+      const bool meets = distance < sum_of_radii;
       // A ball passes a ball along x at that distance.
       const std::vector<BodyDescription<1>> passing{ball<1>(radius, {0, 0, 0}),
                                                     ball<1>(other, {-8, distance, 0}, {2, 0, 0})};
       const auto passed = run_all<1>(passing, with(Response::none), 8);
-      if (count(passed, Kind::contact) != meets) FAIL("passing at " << distance << ", reach " << reach);
+      if (count(passed, Kind::contact) != meets) FAIL("passing at " << distance << ", sum of radii " << sum_of_radii);
       if (count(passed, Kind::separation) != meets) FAIL("no end of passing at " << distance);
       // A ball is thrown up under a ball or box, 4 high, and turns at that distance.
       for (const Shape& target : {Shape(Sphere{radius}), Shape(Box{{radius, radius, radius}})}) {
@@ -202,9 +202,10 @@ TEST_CASE("stress: paths that touch with discriminant 0 and an ulp to either sid
           const std::vector<BodyDescription<2>> thrown{fixed_body<2>(target, motion<2>({0, 0, 4 + distance})),
                                                        ball<2>(other, {0, 0, 0}, {0, 0, 4}, {0, 0, -1})};
           // The target's place is rounded: it may be that of another distance.
-          const bool reaches = (4 + distance) - 4 < reach;
+          const bool reaches = (4 + distance) - 4 < sum_of_radii;
           const auto events = run_all<2>(thrown, with(response), 5);
-          if (count(events, Kind::contact) != reaches) FAIL("thrown to " << distance << ", reach " << reach);
+          if (count(events, Kind::contact) != reaches)
+            FAIL("thrown to " << distance << ", sum of radii " << sum_of_radii);
         }
       }
     }

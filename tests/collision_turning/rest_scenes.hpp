@@ -21,8 +21,8 @@ using Turning = TurningWorld<2>;
 using Body = Turning::Description;
 
 inline constexpr double gravity = 10;
-inline constexpr double flight = 1e-3;                      // WorldOptions::shortest_flight
-inline constexpr double reach = gravity * flight * flight;  // at which bodies hold each other
+inline constexpr double flight = 1e-3;                                 // WorldOptions::shortest_flight
+inline constexpr double holding_distance = gravity * flight * flight;  // at which bodies hold each other
 
 struct Log : Turning::Listener {
   std::vector<std::string> lines;

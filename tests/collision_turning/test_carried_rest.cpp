@@ -88,7 +88,7 @@ TEST_CASE("a stack comes to rest on a belt and is carried, the same with all bro
       for (BodyId i = 1; i <= 3; ++i) CHECK(moves_at(*world, i, belt));
       CHECK(log.passed == 0);
       CHECK(log.rested - log.woken == 3);
-      CHECK(std::abs(place(*world, 3)[2] - 1.25) < 6 * reach);
+      CHECK(std::abs(place(*world, 3)[2] - 1.25) < 6 * holding_distance);
       world->audit();
       // From then on nothing happens, however long it takes.
       const int contacts = log.contacts;
@@ -126,8 +126,8 @@ TEST_CASE("a lift carries what rests on it, and wakes it where it stops", "[rest
     for (BodyId i = 0; i < 3; ++i) CHECK_FALSE(world.resting(i, i + 1));
     world.advance_to(10);
     for (BodyId i = 1; i <= 3; ++i) CHECK(still(world, i));
-    CHECK(std::abs(place(world, 1)[2] - (4 * speed + 0.25)) < 2 * reach);
-    CHECK(std::abs(place(world, 3)[2] - (4 * speed + 1.25)) < 6 * reach);
+    CHECK(std::abs(place(world, 1)[2] - (4 * speed + 0.25)) < 2 * holding_distance);
+    CHECK(std::abs(place(world, 3)[2] - (4 * speed + 1.25)) < 6 * holding_distance);
     CHECK(log.passed == 0);
     world.audit();
   }
@@ -171,7 +171,8 @@ TEST_CASE("a lift that speeds up and a cart that brakes carry what rests on them
         for (BodyId i = 1; i <= 3; ++i) {
           const Vector3d above = place(*world, i) - place(*world, 0);
           CHECK(above[2] > 1 + 0.25 + 0.5 * static_cast<double>(i - 1) - 1e-12);
-          CHECK(above[2] < 1 + 0.25 + 0.5 * static_cast<double>(i - 1) + 12 * static_cast<double>(i) * reach);
+          CHECK(above[2] <
+                1 + 0.25 + 0.5 * static_cast<double>(i - 1) + 12 * static_cast<double>(i) * holding_distance);
         }
         // From then on nothing happens, and the place on the carrier is exactly the same.
         const int contacts = log.contacts;
@@ -219,7 +220,7 @@ TEST_CASE("what is carried wakes where its carrier ceases to accelerate, or does
   CHECK(most < 60000);
   CHECK(log.passed == 0);
   for (BodyId i = 1; i <= 3; ++i) CHECK(still(world, i));
-  CHECK(std::abs(place(world, 1)[2] - 24.25) < 3 * reach);
+  CHECK(std::abs(place(world, 1)[2] - 24.25) < 3 * holding_distance);
 }
 
 TEST_CASE("what friction cannot hold slides off a cart, and what falls slower than a lift does not rest on it",

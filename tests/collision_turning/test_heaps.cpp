@@ -104,9 +104,9 @@ double deepest_overlap(const Turning& world, const Boxes& boxes) {
       const auto along = [&](const Vector3d& axis) {
         if (axis.norm() < 1e-6) return;
         const Vector3d u = axis.normalized();
-        const double reach = (axes[i].transpose() * u).cwiseAbs().dot(boxes.halves[i]) +
-                             (axes[j].transpose() * u).cwiseAbs().dot(boxes.halves[j]);
-        apart = std::max(apart, std::abs(u.dot(centres[i] - centres[j])) - reach);
+        const double half_widths = (axes[i].transpose() * u).cwiseAbs().dot(boxes.halves[i]) +
+                                   (axes[j].transpose() * u).cwiseAbs().dot(boxes.halves[j]);
+        apart = std::max(apart, std::abs(u.dot(centres[i] - centres[j])) - half_widths);
       };
       for (int d = 0; d < 3; ++d) {
         along(axes[i].col(d)), along(axes[j].col(d));

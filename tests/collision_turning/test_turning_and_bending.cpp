@@ -53,7 +53,7 @@ TEST_CASE("the surface of a body that turns is where it is said to be, up to its
     CAPTURE(i, kind_name(solid.shape), h, static_cast<double>(farthest), surface.surface().uncertainty());
     CHECK(farthest <= surface.surface().uncertainty());
     const double angle = motion.angular_velocity.norm() * h;
-    CHECK(surface.surface().uncertainty() <= 0.025 * angle * angle * angle * surface.reach() + 0x1p-38);
+    CHECK(surface.surface().uncertainty() <= 0.025 * angle * angle * angle * surface.vertex_radius() + 0x1p-38);
   }
 }
 

@@ -62,7 +62,7 @@ TEST_CASE("a cube that falls on a face, an edge or a corner comes to rest", "[re
     CHECK(world.resting(cube, floor));
     CHECK(world.counters().rebounds_suppressed == 1);
     CHECK(still(world, cube));
-    CHECK(std::abs(world.motion(cube).path.position(5)[2] - 0.5) < 2 * reach);
+    CHECK(std::abs(world.motion(cube).path.position(5)[2] - 0.5) < 2 * holding_distance);
     CHECK(world.free_motion(cube).path.coefficients[2] == Vector3d(0, 0, -gravity / 2));
     world.audit();
   }
@@ -99,9 +99,9 @@ TEST_CASE("a box thrown at random comes to rest on a face, and costs nothing", "
     const auto& at = world.motion(die);
     int faces = 0;
     for (int d = 0; d < 3; ++d) {
-      if (std::abs(at.direction(Vector3d::Unit(d), world.now()).vector[2]) < 1 - 8 * reach) continue;
+      if (std::abs(at.direction(Vector3d::Unit(d), world.now()).vector[2]) < 1 - 8 * holding_distance) continue;
       ++faces;
-      CHECK(std::abs(at.path.position(world.now())[2] - half[d]) < 2 * reach);
+      CHECK(std::abs(at.path.position(world.now())[2] - half[d]) < 2 * holding_distance);
     }
     CHECK(faces == 1);
     CHECK(lowest(world, die, half) > -1e-14);
@@ -142,7 +142,7 @@ TEST_CASE("a stack of boxes comes to rest, the same with all broad phases and sn
       CHECK_FALSE(world->resting(0, 2));
       CHECK(log.passed == 0);
       CHECK(log.rested - log.woken == static_cast<int>(top));
-      CHECK(std::abs(world->motion(top).path.position(1)[2] - 0.75) < 4 * reach);
+      CHECK(std::abs(world->motion(top).path.position(1)[2] - 0.75) < 4 * holding_distance);
       if (expected.empty()) expected = log.lines;
       CHECK(log.lines == expected);
     }

@@ -21,8 +21,8 @@ def first_times(positions, velocities, radii, end):
     a, b = np.triu_indices(len(positions), 1)
     x = positions[b] - positions[a]
     v = velocities[b] - velocities[a]
-    reach = radii[a] + radii[b]
-    square, half, rest = (v * v).sum(1), (x * v).sum(1), (x * x).sum(1) - reach * reach
+    sum_of_radii = radii[a] + radii[b]
+    square, half, rest = (v * v).sum(1), (x * v).sum(1), (x * x).sum(1) - sum_of_radii * sum_of_radii
     discriminant = half * half - square * rest
     with np.errstate(invalid="ignore"):
         time = (-half - np.sqrt(discriminant)) / square

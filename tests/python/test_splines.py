@@ -18,12 +18,12 @@ def first_root(coefficients, end):
     return next((root for root in real if np.polynomial.polynomial.polyval(root, slope) < 0), None)
 
 
-def gap(a, b, reach):
-    """|b - a|^2 - reach^2 as a polynomial of the time, of paths (k, 3)."""
+def gap(a, b, sum_of_radii):
+    """|b - a|^2 - sum_of_radii^2 as a polynomial of the time, of paths (k, 3)."""
     total = np.zeros(2 * len(a) - 1)
     for axis in range(3):
         total += np.polynomial.polynomial.polymul(b[:, axis] - a[:, axis], b[:, axis] - a[:, axis])
-    total[0] -= reach**2
+    total[0] -= sum_of_radii**2
     return total
 
 
@@ -34,18 +34,18 @@ class Splines(unittest.TestCase):
             for seed in range(4):
                 with self.subTest(degree=degree, seed=seed):
                     random = np.random.default_rng(10 * degree + seed)
-                    n, end, reach = 40, 2.0, 1.0
+                    n, end, sum_of_radii = 40, 2.0, 1.0
                     paths = random.normal(0, 1, (n, degree + 1, 3))
                     paths[:, 0] *= 3
                     world = kds.World(degree)
-                    world.add_bodies(None, paths[:, 0], paths[:, 1], 2 * paths[:, 2], higher=paths[:, 3:], radii=reach / 2)
+                    world.add_bodies(None, paths[:, 0], paths[:, 1], 2 * paths[:, 2], higher=paths[:, 3:], radii=sum_of_radii / 2)
                     events = world.advance_to(end)
                     firsts = {}
                     for event in events[events.kind == kds.EventKind.CONTACT]:
                         firsts.setdefault((int(event.a), int(event.b)), event.time)
                     for a in range(n):
                         for b in range(a + 1, n):
-                            distance = gap(paths[a], paths[b], reach)
+                            distance = gap(paths[a], paths[b], sum_of_radii)
                             if distance[0] <= 0:
                                 continue  # they overlap at the beginning
                             time = first_root(distance, end)

@@ -27,7 +27,7 @@ using testing::try_rule;
 
 /// How far in a direction, as a function of the clock.
 template <class Path, std::size_t Dimension>
-oracle::Polynomial reach(const Path& path, const std::array<double, Dimension>& direction) {
+oracle::Polynomial along(const Path& path, const std::array<double, Dimension>& direction) {
   oracle::Polynomial sum;
   for (std::size_t d = 0; d < Dimension; ++d) {
     const auto axis = path.axis(static_cast<int>(d));
@@ -43,7 +43,7 @@ int check_extents(const ExtentsRule<Path, Dimension>& rule, const MovingSet<Path
   for (std::size_t i = 0; i < rule.directions().size(); ++i) {
     std::optional<Id> most, least;
     std::map<Id, oracle::Polynomial> reaches;
-    for (const Id id : set.ids()) reaches[id] = reach(set[id], rule.directions()[i]);
+    for (const Id id : set.ids()) reaches[id] = along(set[id], rule.directions()[i]);
     for (const Id id : set.ids()) {
       const auto compare = [&](Id other) { return (reaches[id] - reaches[other]).sign_after(oracle::rational(now)); };
       if (!most || compare(*most) > 0) most = id;

@@ -312,7 +312,7 @@ class Proof {
     Between<Rational> between(body_a.shape, body_b.shape);
     between.move(old[a], old[b]);
     Rational gap = dot(n, between.at(rational(now_))) - between.radius;
-    for (std::size_t i = 0; i < 3; ++i) gap += -(abs(n[i]) * between.reach[i]);
+    for (std::size_t i = 0; i < 3; ++i) gap += -(abs(n[i]) * between.half_widths[i]);
     const Pair& pair = pair_of(a, b);
     if (gap < -rational(pair.allowance + roundings(pair, now_))) {
       wrong("the normal of ", a, " and ", b, " at ", now_, " separates nothing: the gap along it is ",

@@ -18,19 +18,19 @@ Polynomial coordinate(const Between<Rational>& exact, std::size_t i) {
 /// At roots of these alone the shapes may come to penetrate, or cease to.
 std::vector<Polynomial> changes_of_penetration(const Between<Rational>& exact) {
   const std::array path{coordinate(exact, 0), coordinate(exact, 1), coordinate(exact, 2)};
-  const Polynomial reach(square(exact.radius));
-  if (!exact.boxes) return {path[0] * path[0] + path[1] * path[1] + path[2] * path[2] - reach};
+  const Polynomial square_of_radius(square(exact.radius));
+  if (!exact.boxes) return {path[0] * path[0] + path[1] * path[1] + path[2] * path[2] - square_of_radius};
   std::vector<Polynomial> result;
   std::array<std::array<Polynomial, 3>, 3> squares;  // of the gap along an axis: none, above, below
   for (std::size_t i = 0; i < 3; ++i) {
-    const Polynomial above = path[i] - Polynomial(exact.reach[i]);
-    const Polynomial below = path[i] + Polynomial(exact.reach[i]);
+    const Polynomial above = path[i] - Polynomial(exact.half_widths[i]);
+    const Polynomial below = path[i] + Polynomial(exact.half_widths[i]);
     result.push_back(above);
     result.push_back(below);
     squares[i] = {Polynomial(), above * above, below * below};
   }
   for (std::size_t k = 1; exact.balls && k < 27; ++k) {
-    result.push_back(squares[0][k % 3] + squares[1][k / 3 % 3] + squares[2][k / 9] - reach);
+    result.push_back(squares[0][k % 3] + squares[1][k / 3 % 3] + squares[2][k / 9] - square_of_radius);
   }
   return result;
 }
@@ -44,10 +44,10 @@ std::vector<Polynomial> changes_of_nearing(const Between<Rational>& exact) {
   for (std::size_t i = 0; exact.boxes && i < 3; ++i) {
     result.push_back(path[i]);
     const std::size_t j = (i + 1) % 3;  // of which the wider gap changes
-    const Polynomial reach(exact.reach[i] - exact.reach[j]);
+    const Polynomial widest(exact.half_widths[i] - exact.half_widths[j]);
     for (const Polynomial& other : {path[i] - path[j], path[i] + path[j]}) {
-      result.push_back(other - reach);
-      result.push_back(other + reach);
+      result.push_back(other - widest);
+      result.push_back(other + widest);
     }
   }
   return result;
@@ -76,9 +76,9 @@ std::vector<Doubles> penetrations(const Between<Rational>& exact, double from, d
 
 /// Whether their bounding balls meet in all that time, which few do.
 bool come_near(const Between<Rational>& exact, double from, double until) {
-  Rational reach = exact.radius;
-  for (const Rational& half : exact.reach) reach += half;
-  Polynomial room(-square(reach));
+  Rational farthest = exact.radius;
+  for (const Rational& half : exact.half_widths) farthest += half;
+  Polynomial room(-square(farthest));
   for (std::size_t i = 0; i < 3; ++i) room = room + coordinate(exact, i) * coordinate(exact, i);
   return first_negative(room, rational(from), rational(until)).has_value();
 }

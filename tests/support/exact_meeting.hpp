@@ -94,10 +94,10 @@ struct Lie {
 template <class Number>
 struct Between {
   std::array<Three<Number>, 3> c;
-  Three<Number> reach{};  ///< of boxes
-  Number radius{};        ///< of balls
-  bool boxes = false;     ///< at least one box
-  bool balls = false;     ///< at least one ball
+  Three<Number> half_widths{};  ///< of boxes
+  Number radius{};              ///< of balls
+  bool boxes = false;           ///< at least one box
+  bool balls = false;           ///< at least one ball
 
   Between(const Shape& a, const Shape& b) {
     for (const Shape* shape : {&a, &b}) {
@@ -106,7 +106,7 @@ struct Between {
         balls = true;
       } else {
         const Box& box = std::get<Box>(*shape);
-        for (std::size_t i = 0; i < 3; ++i) reach[i] = reach[i] + number(box.half_extents[i], radius);
+        for (std::size_t i = 0; i < 3; ++i) half_widths[i] = half_widths[i] + number(box.half_extents[i], radius);
         boxes = true;
       }
     }
@@ -140,7 +140,7 @@ struct Between {
       if (sign_of(paths[i]) < 0) {
         for (Number& x : gaps[i]) x = -x;
       }
-      gaps[i][0] = gaps[i][0] - reach[i];
+      gaps[i][0] = gaps[i][0] - half_widths[i];
       beyond[i] = sign_of(gaps[i]) > 0;
     }
     if (balls && (beyond[0] || beyond[1] || beyond[2])) {  // the distance of the ball's centre from the box
@@ -157,9 +157,9 @@ struct Between {
     const Three<Number> here = at(t);
     const Number zero(0), least = radius - depth;
     if (!boxes) return least < zero || !(dot(here, here) < least * least);
-    Number square(0), widest = magnitude(here[0]) - reach[0];
+    Number square(0), widest = magnitude(here[0]) - half_widths[0];
     for (std::size_t i = 0; i < 3; ++i) {
-      const Number gap = magnitude(here[i]) - reach[i];
+      const Number gap = magnitude(here[i]) - half_widths[i];
       widest = std::max(widest, gap);
       if (zero < gap) square = square + gap * gap;
     }

@@ -49,7 +49,7 @@ Rational square_distance_to_box(const Box& box, const Vector& local) {
 
 struct Axis {
   Vector direction;
-  Rational reach;  ///< half the sum of both boxes' widths along it, times its length
+  Rational half_widths;  ///< half the sum of both boxes' widths along it, times its length
 };
 
 /// All directions along which two boxes can be separated: face normals and products of edges.
@@ -65,18 +65,18 @@ std::vector<Axis> separating_axes(const Box& a, const Box& b) {
   }
   std::vector<Axis> axes;
   for (const Vector& direction : directions) {
-    Rational reach = 0;
+    Rational half_widths = 0;
     for (const Box* box : {&a, &b}) {
       for (std::size_t i = 0; i < 3; ++i) {
-        reach += rational(box->half_extents[i]) * Rational(abs(dot(column(box->orientation, i), direction)));
+        half_widths += rational(box->half_extents[i]) * Rational(abs(dot(column(box->orientation, i), direction)));
       }
     }
-    axes.push_back({direction, reach});
+    axes.push_back({direction, half_widths});
   }
   return axes;
 }
 
-bool apart(const Axis& axis, const Vector& relative) { return abs(dot(axis.direction, relative)) >= axis.reach; }
+bool apart(const Axis& axis, const Vector& relative) { return abs(dot(axis.direction, relative)) >= axis.half_widths; }
 
 Rational sum_of_radii(const Sphere& a, const Sphere& b) { return rational(a.radius) + rational(b.radius); }
 
@@ -112,9 +112,9 @@ std::vector<Polynomial> critical(const Sphere& ball, const Box& box, const Path&
     for (const Polynomial& beyond : {q[i] - h, q[i] + h}) result.push_back(beyond);
     squares[i] = {Polynomial(), (q[i] - h) * (q[i] - h), (q[i] + h) * (q[i] + h)};
   }
-  const Polynomial reach(square(rational(ball.radius)));
+  const Polynomial square_of_radius(square(rational(ball.radius)));
   for (std::size_t region = 1; region < 27; ++region) {
-    result.push_back(squares[0][region % 3] + squares[1][region / 3 % 3] + squares[2][region / 9] - reach);
+    result.push_back(squares[0][region % 3] + squares[1][region / 3 % 3] + squares[2][region / 9] - square_of_radius);
   }
   return result;
 }
@@ -128,8 +128,8 @@ std::vector<Polynomial> critical(const Box& a, const Box& b, const Path& r) {
   std::vector<Polynomial> result;
   for (const Axis& axis : separating_axes(a, b)) {
     const Polynomial along = r[0] * axis.direction[0] + r[1] * axis.direction[1] + r[2] * axis.direction[2];
-    result.push_back(along - axis.reach);
-    result.push_back(along + axis.reach);
+    result.push_back(along - axis.half_widths);
+    result.push_back(along + axis.half_widths);
   }
   return result;
 }
@@ -214,7 +214,7 @@ double gap_between(const Box& a, const Sphere& b, const Vector& r) {
 double gap_between(const Box& a, const Box& b, const Vector& r) {
   double widest = -std::numeric_limits<double>::infinity();
   for (const Axis& axis : separating_axes(a, b)) {
-    const Rational along = abs(dot(axis.direction, r)) - axis.reach;
+    const Rational along = abs(dot(axis.direction, r)) - axis.half_widths;
     widest = std::max(widest, approximate(along) / square_root(dot(axis.direction, axis.direction)));
   }
   return widest;

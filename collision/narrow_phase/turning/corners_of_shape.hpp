@@ -53,14 +53,14 @@ class CornersOfSolid {
 
   /// How far along a direction a corner comes at most while the body turns about an axis, both of unit length and in
   /// the coordinates of the body at one time: points keep their heights and distances about the axis.
-  double revolving_reach(const Eigen::Vector3d& along, const Eigen::Vector3d& axis) const {
+  double revolving_extent(const Eigen::Vector3d& along, const Eigen::Vector3d& axis) const {
     const double cosine = dot(along, axis);
     const double sine = norm(cross(along, axis));
-    double reach = -radius_;
+    double extent = -radius_;
     for (const Eigen::Vector3d& x : points_) {
-      reach = std::max(reach, dot(axis, x) * cosine + norm(cross(axis, x)) * sine);
+      extent = std::max(extent, dot(axis, x) * cosine + norm(cross(axis, x)) * sine);
     }
-    return reach;
+    return extent;
   }
 
  private:
@@ -105,7 +105,7 @@ class CornersOfMesh {
   }
 
   /// That of the ball around the mesh.
-  double revolving_reach(const Eigen::Vector3d&, const Eigen::Vector3d&) const { return radius_; }
+  double revolving_extent(const Eigen::Vector3d&, const Eigen::Vector3d&) const { return radius_; }
 
  private:
   /// Axes of nodes are orthonormal to some units of 2^-24.

@@ -81,9 +81,9 @@ class NodeGaps {
     const Floats distance = square_root(dot(p_, p_)), over_distance = where(distance > Floats{}, 1.0F / distance);
     const Floats widths = dot(half_a_, magnitudes(along_a)) + dot(half_b_, magnitudes(along_b));
     Widest best{distance - over_distance * widths, over_distance * p_, {}, {}};
-    const auto note = [&](Floats along, Floats reach, const Vectors& axis, Bits& with, Bits& other)
+    const auto note = [&](Floats along, Floats extent, const Vectors& axis, Bits& with, Bits& other)
         __attribute__((always_inline)) {
-      const Floats gap = magnitude(along) - reach;
+      const Floats gap = magnitude(along) - extent;
       const Bits wider = gap > best.gap;
       best.gap = greater(gap, best.gap);
       best.direction = where(wider, signed_by(along, axis), best.direction);

@@ -162,17 +162,17 @@ double revolving_apart_for(const PairFrame<Degree>& frame, const Eigen::Vector3d
 /// distances about it. each_point(take) calls take(x) for each, as they are at one time, about the origin of the body.
 /// The sine of the angle to the axis is that of the product: the root of 1 - cosine^2 would lose angles below 1e-8.
 template <class EachPoint>
-double revolving_reach(const Eigen::Vector3d& n, const Eigen::Vector3d& spin, const EachPoint& each_point) {
+double revolving_extent(const Eigen::Vector3d& n, const Eigen::Vector3d& spin, const EachPoint& each_point) {
   const double rate = norm(spin);
   const bool turns = rate > 0;
   const Eigen::Vector3d axis = turns ? Eigen::Vector3d(spin / rate) : n;
   const double cosine = dot(n, axis);
   const double sine = norm(cross(n, axis));
-  double reach = -never;
+  double extent = -never;
   each_point([&](const Eigen::Vector3d& x) {
-    reach = std::max(reach, turns ? dot(axis, x) * cosine + norm(cross(axis, x)) * sine : dot(n, x));
+    extent = std::max(extent, turns ? dot(axis, x) * cosine + norm(cross(axis, x)) * sine : dot(n, x));
   });
-  return reach;
+  return extent;
 }
 
 /// When the balls around two bodies meet, `never` if they do not until the horizon; t if they overlap.

@@ -88,8 +88,8 @@ struct SeenCorners {
   }
 
   /// What it covers at most along a unit vector while it turns about an axis.
-  double revolving_reach(const Eigen::Vector3d& n, const Eigen::Vector3d& spin) const {
-    return collision::revolving_reach(n, spin, [this](const auto& take) {
+  double revolving_extent(const Eigen::Vector3d& n, const Eigen::Vector3d& spin) const {
+    return collision::revolving_extent(n, spin, [this](const auto& take) {
       for (const std::uint32_t i : structure->corners) take(points[i]);
     });
   }

@@ -62,9 +62,9 @@ class TurningAboveHalfSpace {
     double height(const Eigen::Vector3d& x) const { return origin.value + dot(normal, x); }
     Jet height_jet(const Eigen::Vector3d& x) const { return origin + Jet{dot(normal, x), dot(rate, x), dot(bend, x)}; }
     /// No corner in a box is lower.
-    double lowest(const BoxOfCorners& box) const { return height(box.centre) - reach(box) - box.rounding; }
+    double lowest(const BoxOfCorners& box) const { return height(box.centre) - extent(box) - box.rounding; }
     /// How far a box reaches below its centre.
-    double reach(const BoxOfCorners& box) const {
+    double extent(const BoxOfCorners& box) const {
       return std::abs(dot(normal, box.half[0])) + std::abs(dot(normal, box.half[1])) +
              std::abs(dot(normal, box.half[2]));
     }
@@ -187,11 +187,11 @@ double TurningAboveHalfSpace<Degree, Corners>::apart_until(const Frame& frame, d
   const double rate = norm(frame.spin_b);
   const double lengths = std::abs(plane_.offset) + corners_.grown_by();
   const double stretch = this->stretch(frame, all);
-  const double reach = rate > 0 ? corners_.revolving_reach(-frame.normal, frame.of_body(frame.spin_b / rate))
-                                : frame.origin.value - lowest(frame);
+  const double extent = rate > 0 ? corners_.revolving_extent(-frame.normal, frame.of_body(frame.spin_b / rate))
+                                 : frame.origin.value - lowest(frame);
   const double roundings = PairFrame<Degree>::rounding * (lengths + corners_.radius());
   const double wait =
-      revolving_apart_for(frame, plane_.normal, plane_.offset + corners_.grown_by() + reach + roundings);
+      revolving_apart_for(frame, plane_.normal, plane_.offset + corners_.grown_by() + extent + roundings);
   if (wait >= all || !(rate > 0)) return after_wait(t, wait, stretch);
   return after_wait(t, std::max(wait, above_for(frame, stretch, false)), stretch);
 }
@@ -210,7 +210,7 @@ double TurningAboveHalfSpace<Degree, Corners>::above_for(const Frame& frame, dou
     const double radius = box.radius + box.rounding;
     const double however_turned = positive(centre - Jet{radius, 0, 0});
     if (!(however_turned < first)) return first;
-    return std::max(however_turned, positive(centre - Jet{frame.reach(box) + box.rounding, frame.rate_b * radius, 0}));
+    return std::max(however_turned, positive(centre - Jet{frame.extent(box) + box.rounding, frame.rate_b * radius, 0}));
   };
   const auto positive_of_corner = [&](Jet f) {
     if (!open) return positive(f);

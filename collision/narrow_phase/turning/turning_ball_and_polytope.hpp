@@ -216,7 +216,7 @@ double TurningBallAndPolytope<Degree>::apart_until(double t, double horizon) con
   double wait = positive_for(f, bounds.third, stretch);
   if (stretch < all && time_of_turning() != never) {
     for (const Eigen::Vector3d& along : {n, normalized(frame.way.value)}) {
-      const double covered = frame.a.revolving_reach(along, frame.spin_a) + radius();
+      const double covered = frame.a.revolving_extent(along, frame.spin_a) + radius();
       wait = std::max(wait, revolving_apart_for(frame, along, covered));
     }
   }

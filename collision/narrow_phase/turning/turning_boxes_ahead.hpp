@@ -22,7 +22,7 @@ double TurningBoxes<Degree>::revolving_apart_for(const PairFrame<Degree>& frame,
   };
   const auto of_a = corners(frame.matrix_a, box_a_.exact), of_b = corners(frame.matrix_b, box_b_.exact);
   const auto along = [&](const Eigen::Vector3d& n) {
-    const double covered = revolving_reach(n, frame.spin_a, of_a) + revolving_reach(-n, frame.spin_b, of_b);
+    const double covered = revolving_extent(n, frame.spin_a, of_a) + revolving_extent(-n, frame.spin_b, of_b);
     return collision::revolving_apart_for(frame, n, covered);
   };
   const Eigen::Vector3d u = way < 6    ? frame.axis_a(way / 2)

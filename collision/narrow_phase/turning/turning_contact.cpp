@@ -14,6 +14,7 @@
 #include "collision/narrow_phase/turning/turning_polytopes.hpp"
 #include "collision/narrow_phase/turning/turning_rounded_polytopes.hpp"
 #include "collision/narrow_phase/turning/ways_apart.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 
@@ -32,16 +33,16 @@ using Eigen::Vector3d;
 template <int Degree>
 using Body = typename TurningContact<Degree>::Body;
 
-double radius(const PlacedShape& shape) { return std::get<Sphere>(shape.shape).radius; }
+double radius(const PlacedShape& shape) { return ball_radius(shape.shape); }
 const Vector3d& half_extents(const PlacedShape& shape) { return std::get<Box>(shape.shape).half_extents; }
 /// The box that a shape is, in the coordinates of its body.
 std::optional<AlignedBox> box_of(const PlacedShape& shape) {
   if (const auto* const box = std::get_if<Box>(&shape.shape)) return AlignedBox{-box->half_extents, box->half_extents};
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) return hull->polytope->box();
-  return std::nullopt;
+  const Polytope* const hull = polytope_of(shape.shape);
+  return hull ? hull->box() : std::nullopt;
 }
-bool is_ball(const PlacedShape& shape) { return std::holds_alternative<Sphere>(shape.shape); }
-bool is_capsule(const PlacedShape& shape) { return std::holds_alternative<Capsule>(shape.shape); }
+bool is_ball(const PlacedShape& shape) { return ball_radius(shape.shape) > 0; }
+bool is_box(const PlacedShape& shape) { return std::holds_alternative<Box>(shape.shape); }
 
 /// Calls ask(pair) with what WaysApart takes. Precondition: turning counts for the pair; a half-space comes first, or
 /// else a hull, or else a capsule.
@@ -57,11 +58,11 @@ auto with_ways(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
   }
   const auto box_a = box_of(a.shape), box_b = box_of(b.shape);
   if (box_a && box_b) return ask(TurningBoxes<Degree>(a.motion, *box_a, b.motion, *box_b));
-  if (std::holds_alternative<ConvexHull>(a.shape.shape) || is_capsule(a.shape)) {
+  if (!is_ball(a.shape) && !is_box(a.shape)) {
     const ConvexCore core(a.shape.shape);
     if (is_ball(b.shape)) return ask(TurningBallAndPolytope<Degree>(a.motion, core, b.motion, radius(b.shape)));
     const ConvexCore other(b.shape.shape);
-    if (is_capsule(a.shape) || is_capsule(b.shape)) {
+    if (core.radius() > 0 || other.radius() > 0) {
       return ask(TurningRoundedPolytopes<Degree>(a.motion, core, b.motion, other));
     }
     return ask(TurningPolytopes<Degree>(a.motion, core, b.motion, other));
@@ -115,7 +116,7 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
 template <class Pair, int Degree>
 double bodies_fall_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
   if constexpr (std::is_same_v<Pair, TurningBoxes<Degree>>) {
-    const auto is_hull = [](const Body<Degree>& body) { return std::holds_alternative<ConvexHull>(body.shape.shape); };
+    const auto is_hull = [](const Body<Degree>& body) { return polytope_of(body.shape.shape) != nullptr; };
     if (is_hull(a) || is_hull(b)) {
       const TurningPolytopes<Degree> hulls(a.motion, ConvexCore(a.shape.shape), b.motion, ConvexCore(b.shape.shape));
       return falls_deeper<TurningPolytopes<Degree>, Degree>(hulls, a, b, t, horizon);

@@ -5,8 +5,6 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/shape.hpp"
 
-#include <variant>
-
 namespace kds::collision {
 
 // The functions of narrow_phase.hpp for bodies that turn. What they answer is a function of motions and shapes alone,
@@ -28,7 +26,7 @@ double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const cert
 /// Whether the turning of two bodies matters: not for two balls, or a ball and a half-space, since a ball covers the
 /// same place in all orientations and a half-space does not turn.
 inline bool turning_counts(const PlacedShape& a, const PlacedShape& b) {
-  const auto counts = [](const Shape& shape) { return !std::holds_alternative<Sphere>(shape) && !unbounded(shape); };
+  const auto counts = [](const Shape& shape) { return ball_radius(shape) == 0 && !unbounded(shape); };
   return counts(a.shape) || counts(b.shape);
 }
 

@@ -2,6 +2,7 @@
 
 #include "collision/narrow_phase/turning/turning_mesh_front.hpp"
 #include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 
 #include <stdexcept>
 #include <type_traits>
@@ -21,7 +22,7 @@ auto with_search(const MeshBody<Degree>& a, const MeshBody<Degree>& b, const Ask
     return ask(TurningMeshSearch<Degree, std::decay_t<decltype(side)>>(mesh, a.motion, side, b.motion));
   };
   if (const auto* const other = std::get_if<MeshShape>(&b.shape.shape)) return with(MeshOfPair(*other));
-  if (std::holds_alternative<ConvexHull>(b.shape.shape)) {
+  if (polytope_of(b.shape.shape)) {
     const MeshShape surface = surface_of(b.shape.shape);
     return with(MeshOfPair(surface, true));
   }
@@ -60,8 +61,8 @@ template <int Degree>
 Contact TurningMeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
   return with_search<Degree>(a, b, [&](const auto& search) -> Contact {
     TurningTouch touch = search.touch_at(t);
-    if (const auto* const hull = std::get_if<ConvexHull>(&b.shape.shape)) {
-      touch.feature_b = hull->polytope->feature_of(touch.feature_b);
+    if (const Polytope* const hull = polytope_of(b.shape.shape)) {
+      touch.feature_b = hull->feature_of(touch.feature_b);
     }
     return {t, a.motion.path.position(t) + touch.point, touch.normal, touch.feature_a, touch.feature_b};
   });

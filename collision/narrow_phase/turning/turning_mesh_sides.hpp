@@ -42,8 +42,9 @@ class MeshOfPair {
   const ObbNode& node(std::uint32_t i) const { return nodes_[i]; }
   NodeUnits units() const {
     const Lanes centre = nodes_[0].centre;
-    const double reach = norm(Eigen::Vector3d(centre[0], centre[1], centre[2])) + static_cast<double>(nodes_[0].radius);
-    return {unit_, 0, unit_ * reach * (1 + 0x1p-40)};
+    const double radius =
+        norm(Eigen::Vector3d(centre[0], centre[1], centre[2])) + static_cast<double>(nodes_[0].radius);
+    return {unit_, 0, unit_ * radius * (1 + 0x1p-40)};
   }
   bool solid() const { return solid_; }
   /// Whether it bounds a volume: its triangles turn alike, and along each edge as many to and fro. Takes O(n log n) of
@@ -170,8 +171,8 @@ class CapsuleOfPair : public SolidSide {
 
   const ObbNode& node(std::uint32_t) const { return node_; }
   NodeUnits units() const {
-    const double reach = (capsule_.half_length + capsule_.radius) * (1 + 0x1p-50);
-    return {capsule_.half_length, capsule_.radius, reach};
+    const double radius = (capsule_.half_length + capsule_.radius) * (1 + 0x1p-50);
+    return {capsule_.half_length, capsule_.radius, radius};
   }
   const Capsule& capsule() const { return capsule_; }
 

@@ -17,9 +17,9 @@ namespace kds::collision {
 
 /// What all nodes of a body have in common.
 struct NodeUnits {
-  double unit;   ///< their length in the world
-  double round;  ///< by which they are grown on all sides
-  double reach;  ///< distance of the farthest of them from the origin of the body
+  double unit;      ///< their length in the world
+  double round;     ///< by which they are grown on all sides
+  double farthest;  ///< distance of the farthest of them from the origin of the body
 };
 
 /// The box of these half extents as a node. Its unit is half its diagonal.
@@ -53,8 +53,8 @@ struct NodesView : TurningView<Degree> {
   NodesView(const RigidMotion& a, const RigidMotion& b, const PairRates& rates, const NodeUnits& of_a,
             const NodeUnits& of_b, double t, double horizon)
       : TurningView<Degree>(a, b, rates, t),
-        size(norm(this->way.value) + of_a.reach + of_b.reach),
-        ahead(std::max(0.0, this->stretch(of_a.reach + of_b.reach, (horizon - t) * (1 + 0x1p-40)))) {
+        size(norm(this->way.value) + of_a.farthest + of_b.farthest),
+        ahead(std::max(0.0, this->stretch(of_a.farthest + of_b.farthest, (horizon - t) * (1 + 0x1p-40)))) {
     const double s = ahead;
     const auto put = [&](float* three, const Eigen::Vector3d& x) {
       const Eigen::Vector3d in_a = this->seen_from_a(x);
@@ -76,7 +76,8 @@ struct NodesView : TurningView<Degree> {
     const double distance = (norm(this->way.value) + this->way_error) / size + speed;
     const auto third_of = [&](double angle_n) {
       return static_cast<float>(TurningBounds::third_of(angle_n, s * this->rate_a, s * this->rate_b,
-                                                        {distance, speed, bend}, of_a.reach / size, of_b.reach / size) *
+                                                        {distance, speed, bend}, of_a.farthest / size,
+                                                        of_b.farthest / size) *
                                 (1 + 0x1p-20));
     };
     floats.third[0] = third_of(0), floats.third[1] = third_of(s * this->rate_a);

@@ -76,16 +76,16 @@ class TurningPartPairs : public ListOfPartPairs {
   struct SeenBall {
     SeenBall(const BallOfPart& ball, const Eigen::Matrix3d& axes)
         : centre(axes * ball.centre),
-          reach(norm(ball.centre) * (1 + PairFrame<Degree>::rounding)),
+          distance(norm(ball.centre) * (1 + PairFrame<Degree>::rounding)),
           radius(ball.radius) {}
 
     Eigen::Vector3d centre;
-    double reach;  ///< how far the centre is from the origin of the body
+    double distance;  ///< how far the centre is from the origin of the body
     double radius;
   };
 
   /// How far the centre comes along a unit vector while it turns.
-  static double revolving_reach(const SeenBall& ball, const Eigen::Vector3d& n, const Eigen::Vector3d& spin) {
+  static double revolving_extent(const SeenBall& ball, const Eigen::Vector3d& n, const Eigen::Vector3d& spin) {
     const double rate = norm(spin);
     if (!(rate > 0)) return dot(n, ball.centre);
     const Eigen::Vector3d axis = spin / rate;
@@ -101,17 +101,17 @@ class TurningPartPairs : public ListOfPartPairs {
     const Eigen::Vector3d way = frame.way.value + b.centre - a.centre;
     const double distance = norm(way);
     const double radii = a.radius + b.radius;
-    const double lengths = norm(frame.way.value) + a.reach + b.reach + radii;
+    const double lengths = norm(frame.way.value) + a.distance + b.distance + radii;
     const double gap = distance - radii - frame.way_error - rounding * lengths;
     if (!(gap > 0)) return 0;
     const Eigen::Vector3d n = way / distance;
-    const double turning = frame.rate_a * a.reach + frame.rate_b * b.reach;
+    const double turning = frame.rate_a * a.distance + frame.rate_b * b.distance;
     const Eigen::Vector3d velocity = frame.way.rate + cross(frame.spin_b, b.centre) - cross(frame.spin_a, a.centre);
     const double rate = dot(n, velocity) - frame.rate_error - rounding * (norm(frame.way.rate) + turning);
-    const double inward = frame.rate_a * frame.rate_a * a.reach + frame.rate_b * frame.rate_b * b.reach;
+    const double inward = frame.rate_a * frame.rate_a * a.distance + frame.rate_b * frame.rate_b * b.distance;
     const double bend = dot(n, frame.way.bend) - rounding * norm(frame.way.bend) - (1 + rounding) * inward;
     const double covered =
-        radii + revolving_reach(a, n, frame.spin_a) + revolving_reach(b, -n, frame.spin_b) + rounding * lengths;
+        radii + revolving_extent(a, n, frame.spin_a) + revolving_extent(b, -n, frame.spin_b) + rounding * lengths;
     return std::max(certificates::positive_for(gap, rate, 0.5 * bend), revolving_apart_for(frame, n, covered));
   }
 };

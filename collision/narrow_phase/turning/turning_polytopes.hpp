@@ -69,7 +69,7 @@ class TurningPolytopes {
   /// Those conditions that are not above a value at the time of a frame; all of them if there is no frame.
   struct Conditions {
     const Frame* frame = nullptr;
-    double reach = 0;
+    double limit = 0;
   };
   static Conditions all(int) { return {}; }
   /// What cannot be reached in the time of the stretch need not be looked at.
@@ -160,7 +160,7 @@ class TurningPolytopes {
   template <class Test>
   static bool every_corner(const RigidMotion& of_face, const TurningPolytope& polytope, std::size_t face,
                            const RigidMotion& of_corner, const TurningPolytope& other, const SeenPolytope* seen_face,
-                           const SeenPolytope* seen_other, const Eigen::Vector3d& way, double reach, const Test& test);
+                           const SeenPolytope* seen_other, const Eigen::Vector3d& way, double limit, const Test& test);
   double wait_along(const FrameOf<SeenCorners>& frame, const Eigen::Vector3d& n, double grown, bool with_a,
                     double stretch) const;
 
@@ -180,13 +180,13 @@ template <class Test>
 bool TurningPolytopes<Degree>::every_corner(const RigidMotion& of_face, const TurningPolytope& polytope,
                                             std::size_t face, const RigidMotion& of_corner,
                                             const TurningPolytope& other, const SeenPolytope* seen_face,
-                                            const SeenPolytope* seen_other, const Eigen::Vector3d& way, double reach,
+                                            const SeenPolytope* seen_other, const Eigen::Vector3d& way, double limit,
                                             const Test& test) {
   const auto corners = polytope.face(face);
   for (const std::uint32_t i : other.structure->corners) {
     if (seen_face) {
       const Eigen::Vector3d& on_face = seen_face->points[polytope.structure->faces[face][0]];
-      if (dot(seen_face->normals[face], way + seen_other->points[i] - on_face) > reach) continue;
+      if (dot(seen_face->normals[face], way + seen_other->points[i] - on_face) > limit) continue;
     }
     if (!test(certificates::VertexFaceSeparation<Degree>{of_corner, of_face, other.points[i], corners})) return false;
   }
@@ -202,11 +202,11 @@ bool TurningPolytopes<Degree>::every_condition(int way, const Conditions& which,
   const Eigen::Vector3d between = frame ? frame->way.value : Eigen::Vector3d(Eigen::Vector3d::Zero());
   if (way < faces_a()) {
     return every_corner(a_, polytope_a_, static_cast<std::size_t>(way), b_, polytope_b_, seen_a, seen_b, between,
-                        which.reach, test);
+                        which.limit, test);
   }
   if (way < faces()) {
     return every_corner(b_, polytope_b_, static_cast<std::size_t>(way - faces_a()), a_, polytope_a_, seen_b, seen_a,
-                        -between, which.reach, test);
+                        -between, which.limit, test);
   }
   const EdgePair pair = edge_pair(way);
   std::array<double, 5> value{};
@@ -215,7 +215,7 @@ bool TurningPolytopes<Degree>::every_condition(int way, const Conditions& which,
   const auto& faces_at_v = polytope_b_.structure->edges[pair.of_b].faces;
   const std::array<bool, 5> given{true, has_face(faces_at_u[0]), has_face(faces_at_u[1]), has_face(faces_at_v[0]),
                                   has_face(faces_at_v[1])};
-  const auto matters = [&](std::size_t k) { return given[k] && (!frame || !(value[k] > which.reach)); };
+  const auto matters = [&](std::size_t k) { return given[k] && (!frame || !(value[k] > which.limit)); };
   const std::array<Eigen::Vector3d, 2> u = polytope_a_.edge(pair.of_a), u_back{u[1], u[0]};
   const std::array<Eigen::Vector3d, 2> v = polytope_b_.edge(pair.of_b), v_back{v[1], v[0]};
   using certificates::NormalAlongEdge;
@@ -328,7 +328,7 @@ double TurningPolytopes<Degree>::farther_apart_until(double grown, double t, dou
   if (stretch < all && this->time_of_turning() != never) {
     for (const Eigen::Vector3d& along : {n, normalized(frame.way.value)}) {
       const double covered =
-          grown + frame.a.revolving_reach(along, frame.spin_a) + frame.b.revolving_reach(-along, frame.spin_b);
+          grown + frame.a.revolving_extent(along, frame.spin_a) + frame.b.revolving_extent(-along, frame.spin_b);
       wait = std::max(wait, revolving_apart_for(frame, along, covered));
     }
   }

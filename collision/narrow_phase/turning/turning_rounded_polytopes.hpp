@@ -104,20 +104,20 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
   struct Sides {
     Side first, second;
     Eigen::Vector3d way;  ///< from the first to the second, where they are seen
-    double reach;
+    double limit;
 
-    Sides turned_round() const { return {second, first, -way, reach}; }
+    Sides turned_round() const { return {second, first, -way, limit}; }
     /// From a point of the first to one of the second.
     Eigen::Vector3d between(std::uint32_t i, std::uint32_t j) const {
       return way + second.seen->points[j] - first.seen->points[i];
     }
-    bool matters(double value) const { return !(value > reach); }
+    bool matters(double value) const { return !(value > limit); }
   };
-  Sides sides(const Frame* frame, double reach) const {
+  Sides sides(const Frame* frame, double limit) const {
     return {{this->a_, this->polytope_a_, edges_at_[0], frame ? &frame->a : nullptr},
             {this->b_, this->polytope_b_, edges_at_[1], frame ? &frame->b : nullptr},
             frame ? frame->way.value : Eigen::Vector3d(Eigen::Vector3d::Zero()),
-            reach};
+            limit};
   }
 
   static int corners(const TurningPolytope& core) { return static_cast<int>(core.structure->corners.size()); }
@@ -271,7 +271,7 @@ bool TurningRoundedPolytopes<Degree>::every_end(const Sides& sides, std::uint32_
 template <int Degree>
 template <class Test>
 bool TurningRoundedPolytopes<Degree>::every_condition(int way, const Conditions& which, const Test& test) const {
-  const Sides both = sides(which.frame, which.reach);
+  const Sides both = sides(which.frame, which.limit);
   if (way < first_corner_and_edge_) {
     if (!Base::every_condition(way, which, test)) return false;
     if (way < this->faces_a()) return every_plane_distance(both, static_cast<std::size_t>(way), test);
@@ -284,7 +284,7 @@ bool TurningRoundedPolytopes<Degree>::every_condition(int way, const Conditions&
     const auto& v_ends = this->polytope_b_.structure->edges[pair.of_b].ends;
     if (which.frame) {
       const double sine = norm(cross(which.frame->a.edges[pair.of_a], which.frame->b.edges[pair.of_b]));
-      if (this->edge_values(*which.frame, pair)[0] - radius() * sine > which.reach) return true;
+      if (this->edge_values(*which.frame, pair)[0] - radius() * sine > which.limit) return true;
     }
     return test(between(both, u_ends[0], v_ends[0], certificates::LinesApart{u, v, radii_}));
   }

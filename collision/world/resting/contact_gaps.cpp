@@ -1,6 +1,7 @@
 #include "collision/world/resting/contact_gaps.hpp"
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting/cluster_rules.hpp"
@@ -8,16 +9,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 namespace kds::collision {
 namespace {
 
 using Eigen::Vector3d;
 
-bool is_round(const PlacedShape& shape) {
-  return std::holds_alternative<Sphere>(shape.shape) || std::holds_alternative<Capsule>(shape.shape);
-}
+bool is_round(const PlacedShape& shape) { return rounding_radius(shape.shape) > 0; }
 
 /// b, displaced.
 template <int Degree>
@@ -65,7 +63,7 @@ bool ContactGaps<Motion>::turns(const Contact& contact) const {
   if (!a_round && !b_round) return false;
   const PlacedShape& other = a_round ? b : a;
   if (collision::concave(other.shape)) return true;
-  if (std::holds_alternative<ConvexHull>(other.shape)) {
+  if (polytope_of(other.shape)) {
     const Vector3d towards = a_round ? Vector3d(-contact.normal) : contact.normal;
     return supporting_feature(other, towards).feature.kind != Feature::Kind::face;
   }

@@ -8,7 +8,7 @@ namespace kds::collision::turning_rest {
 /// How far two bodies may be from each other, at a place where they have touched, to hold each other there:
 /// acceleration times WorldOptions::shortest_flight squared, eight times the height of such a flight (10 um on Earth,
 /// at 1 ms), and no more than this part of the bounding radius of the smaller. Bodies at rest may be that far apart.
-inline constexpr double largest_reach = 0x1p-6;
+inline constexpr double largest_holding_distance = 0x1p-6;
 
 /// A body is calm while its fastest point has at most this many times the speed squared that a fall by that way gives:
 /// with 4 it is twice acceleration times shortest flight (2 cm/s on Earth). If it is less, a body that rocks on its

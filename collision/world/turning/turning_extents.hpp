@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
@@ -26,8 +27,8 @@ inline constexpr double path_rounding = 0x1p-24;
 /// shapes.
 template <class Take>
 bool take_corners(const PlacedShape& shape, const Take& take) {
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape.shape)) {
-    for (const Eigen::Vector3d& x : hull->polytope->points()) take(x);
+  if (const Polytope* const hull = polytope_of(shape.shape)) {
+    for (const Eigen::Vector3d& x : hull->points()) take(x);
     return true;
   }
   if (const auto* const mesh = std::get_if<MeshShape>(&shape.shape)) {
@@ -53,7 +54,7 @@ bool take_corners(const PlacedShape& shape, const Take& take) {
 }
 
 /// Whether the volume of a body with this shape is the body of revolution of points around a hull or a mesh.
-inline bool takes_corners(const Shape& shape) { return std::holds_alternative<ConvexHull>(shape) || has_mesh(shape); }
+inline bool takes_corners(const Shape& shape) { return polytope_of(shape) || has_mesh(shape); }
 
 /// Of the angle between a unit vector and an axis: where that is small, from the two other coordinates, since 1 - n_d^2
 /// loses angles below 1e-8.
@@ -79,12 +80,7 @@ Eigen::Vector3d turning_half_extents(const PlacedShape& shape, const certificate
   const double radius = shape.bounding_radius;
   Eigen::Vector3d edges = Eigen::Vector3d::Zero();  // half of the box that the body is
   double grown_by = 0;
-  if (const auto* const box = std::get_if<Box>(&shape.shape)) {
-    edges = box->half_extents;
-  } else if (const auto* const capsule = std::get_if<Capsule>(&shape.shape)) {
-    edges = Eigen::Vector3d(0, 0, capsule->half_length);
-    grown_by = capsule->radius;
-  }
+  if (const auto box = rounded_box_of(shape.shape)) edges = box->half_extents, grown_by = box->radius;
   const double rate = norm(motion.angular_velocity);
   const bool still = motion.spin().still();
   if (!still && !(rate >= 0x1p-400 && rate <= 0x1p400)) return Eigen::Vector3d::Constant(radius);

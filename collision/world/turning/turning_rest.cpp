@@ -194,14 +194,14 @@ typename TurningRest<Motion>::Scale TurningRest<Motion>::scale(Key key) const {
 
 /// How far from each other bodies may be that hold each other, in units of length.
 template <class Motion>
-double TurningRest<Motion>::reach(const Scale& scale) const {
-  return std::min(scale.acceleration * flight_ * flight_, largest_reach * scale.size);
+double TurningRest<Motion>::holding_distance(const Scale& scale) const {
+  return std::min(scale.acceleration * flight_ * flight_, largest_holding_distance * scale.size);
 }
 
 /// Up to which speed of its fastest point a body is calm.
 template <class Motion>
 double TurningRest<Motion>::calm_speed(const Scale& scale) const {
-  return std::sqrt(calm_energy * scale.acceleration * reach(scale));
+  return std::sqrt(calm_energy * scale.acceleration * holding_distance(scale));
 }
 
 /// How that moves what two bodies that touch lie on: the fixed one of them, and what the others lie on that have
@@ -250,7 +250,7 @@ void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
   const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
   auto& places = pair(key).places;
   const Scale scale = this->scale(key);
-  const double far = reach(scale);
+  const double far = holding_distance(scale);
   std::erase_if(places, [&](const detail::TouchedPlace& place) {
     const Vector3d x = a.out(place.on_a);
     const bool lasts = t - place.time <= memory * flight_ && norm(b.out(place.on_b) - x) <= far;

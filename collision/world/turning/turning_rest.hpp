@@ -235,7 +235,7 @@ class TurningRest {
   Eigen::Vector3d half_weight(BodySlot slot) const;
   double acceleration(BodySlot slot) const;
   Scale scale(Key key) const;
-  double reach(const Scale& scale) const;
+  double holding_distance(const Scale& scale) const;
   double calm_speed(const Scale& scale) const;
   std::optional<turning_rest::Carrier> common_carrier(BodySlot a, BodySlot b) const;
   bool calm(BodySlot slot, double acceleration, const turning_rest::Carrier& carrier) const;

@@ -183,7 +183,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
       if (!bodies_.fixed(other) && of_[other].seen == walks_ && of_[other].place < i) continue;
       if (resting && !pairs_[key].rests) continue;
       const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
-      const double far = reach(scale(key));
+      const double far = holding_distance(scale(key));
       const double friction = std::min(bodies_[key.first].friction, bodies_[key.second].friction);
       const bool smooth =
           std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;

@@ -169,7 +169,7 @@ function drawHandle({parent, svg, box, title, i, number, name, stroke, place, ve
   const group = make('g', {class: 'handle', 'data-velocity': number, 'data-ahead': ahead,
                            transform: `translate(${x + u} ${y + v})`}, parent);
   make('title', {text: `velocity of ${name}`}, group);
-  make('circle', {r: 14, class: 'reach'}, group);
+  make('circle', {r: 14, class: 'grip'}, group);
   make('circle', {r: 5, stroke}, group);
 }
 

@@ -21,7 +21,7 @@ function extent(things, times, of) {
 }
 
 function layOutDrawings() {
-  const kept = drawings.map(({reach, box}) => ({reach, box}));
+  const kept = drawings.map(({range, box}) => ({range, box}));
   $('drawings').replaceChildren();
   $('drawings').hidden = data.drawings.length === 0;
   drawings.length = 0;
@@ -51,7 +51,7 @@ function layOutDrawings() {
     const drawing = {title, versions, kind, axis, svg, caption, box, width, height};
     if (kind === 'ruler') {
       // Every version has all ends.
-      drawing.reach = rangeKept && kept[i] ? kept[i].reach
+      drawing.range = rangeKept && kept[i] ? kept[i].range
         : extent(versions[0].places, times, (place, t) => valueOf(place, axis, t));
     }
     scaleDrawing(drawing);
@@ -73,7 +73,7 @@ function scaleDrawing(drawing) {
   drawing.still = make('g', {}, svg);
   drawing.moving = make('g', {}, svg);
   if (kind !== 'ruler') return;
-  const [low, high] = drawing.reach, k = (width - 2 * left) / (high - low || 1);
+  const [low, high] = drawing.range, k = (width - 2 * left) / (high - low || 1);
   drawing.along = (v) => left + (v - low) * k;
   set(svg, {'data-v0': drawing.along(0), 'data-kv': k});
   make('path', {class: 'axis', d: `M${left} 24H${width - left}`}, drawing.still);

@@ -129,9 +129,9 @@ function planeView(svg) {
   /** Where each has been of late, and where it will be soon. */
   function drawTrails(t) {
     moving.trails.replaceChildren();
-    const reach = duration * 0.08;
+    const shown = duration * 0.08;
     for (const element of data.elements) {
-      for (const [name, from, to] of [['', t - reach, t], ['ahead', t, t + reach]]) {
+      for (const [name, from, to] of [['', t - shown, t], ['ahead', t, t + shown]]) {
         const [a, b] = [Math.max(from, data.begin), Math.min(to, data.end)];
         if (!(a < b)) continue;
         const places = [];

@@ -30,7 +30,7 @@ function spaceView(svg) {
   const css = (colour) => new THREE.Color(
     getComputedStyle(document.documentElement).getPropertyValue(/--[a-z0-9]+/.exec(colour)[0]).trim());
   const ballSize = 0.05;
-  let scene, reach, balls, rods, trails, witness, labels, ring;
+  let scene, sceneRadius, balls, rods, trails, witness, labels, ring;
 
   /** All as large as the box around everything that moves; the camera sees most of the ball around that box. */
   function layout(width, height) {
@@ -42,24 +42,24 @@ function spaceView(svg) {
     }
     const centre = box.getCenter(new THREE.Vector3());
     if (!scene) camera.position.copy(centre).add(new THREE.Vector3(-0.55, -1, 0.45));
-    reach = box.getSize(new THREE.Vector3()).length() / 2 || 1;
+    sceneRadius = box.getSize(new THREE.Vector3()).length() / 2 || 1;
     camera.aspect = width / height;
     const narrow = Math.atan(Math.tan(camera.fov * Math.PI / 360) * Math.min(1, camera.aspect));
     controls.target.copy(centre);
     // What moves stays away from the corners of its box, which may leave the picture.
-    camera.position.sub(centre).setLength(0.9 * reach / Math.sin(narrow)).add(centre);
+    camera.position.sub(centre).setLength(0.9 * sceneRadius / Math.sin(narrow)).add(centre);
     camera.updateProjectionMatrix();
     renderer.setSize(width, height, false);
 
     scene = new THREE.Scene();
-    scene.fog = new THREE.Fog(css('--card'), camera.position.distanceTo(centre), camera.position.distanceTo(centre) + 2 * reach);
+    scene.fog = new THREE.Fog(css('--card'), camera.position.distanceTo(centre), camera.position.distanceTo(centre) + 2 * sceneRadius);
     scene.add(new THREE.HemisphereLight(0xffffff, 0x888888, 0.75));
     const sun = new THREE.DirectionalLight(0xffffff, 0.5);
     camera.add(sun);
     scene.add(camera);
     const frame = new THREE.Box3Helper(box, css('--rule'));
     scene.add(frame);
-    const sphere = new THREE.SphereBufferGeometry(ballSize * reach, 32, 20);
+    const sphere = new THREE.SphereBufferGeometry(ballSize * sceneRadius, 32, 20);
     balls = new Map(data.elements.map((element) => {
       const ball = new THREE.Mesh(sphere, new THREE.MeshLambertMaterial({color: css(colour.get(element.id))}));
       scene.add(ball);
@@ -88,7 +88,7 @@ function spaceView(svg) {
       const along = b.clone().sub(a);
       rod.userData = edges[i];
       rod.position.copy(a).add(b).divideScalar(2);
-      rod.scale.set(0.006 * reach, along.length(), 0.006 * reach);
+      rod.scale.set(0.006 * sceneRadius, along.length(), 0.006 * sceneRadius);
       rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.normalize());
     });
   }
@@ -106,7 +106,7 @@ function spaceView(svg) {
         const shape = new THREE.BufferGeometry().setFromPoints(places);
         const color = css(colour.get(element.id));
         const line = new THREE.Line(shape, ahead
-          ? new THREE.LineDashedMaterial({color, dashSize: 0.02 * reach, gapSize: 0.02 * reach})
+          ? new THREE.LineDashedMaterial({color, dashSize: 0.02 * sceneRadius, gapSize: 0.02 * sceneRadius})
           : new THREE.LineBasicMaterial({color}));
         if (ahead) line.computeLineDistances();
         trails.add(line);
@@ -133,7 +133,7 @@ function spaceView(svg) {
     if (points.length === 5) {
       const centre = centreOf(points);
       const radius = centre.distanceTo(points[0]);
-      if (!(radius < 20 * reach)) return;
+      if (!(radius < 20 * sceneRadius)) return;
       shape = new THREE.Mesh(new THREE.SphereBufferGeometry(radius, 48, 32), material);
       shape.position.copy(centre);
     } else {
@@ -170,7 +170,7 @@ function spaceView(svg) {
     const seen = [...balls].map(([id, ball]) => {
       const at = ball.position.clone().project(camera);
       const far = ball.position.distanceTo(camera.position);
-      return {id, x: (at.x + 1) / 2 * size.width, y: (1 - at.y) / 2 * size.height, far, radius: ballSize * reach / far * scale};
+      return {id, x: (at.x + 1) / 2 * size.width, y: (1 - at.y) / 2 * size.height, far, radius: ballSize * sceneRadius / far * scale};
     });
     for (const one of seen) {
       const hidden = seen.some((o) => o.far < one.far && Math.hypot(o.x - one.x, o.y - one.y) < o.radius);

@@ -117,12 +117,12 @@ SieveCost sieve(std::span<const Elements> catalogue, const Screening& options, d
     for (std::uint32_t i = 0; i < orbits.size(); ++i) {
       cells.visit_and_add(i, states[i].position, [&](std::uint32_t j) {
         const Vector3d apart = states[j].position - states[i].position;
-        const double reach = d + 2 * bend;
+        const double most = d + 2 * bend;
         // The relative velocity brings them nearer by at most its length.
         const Vector3d speed = states[j].velocity - states[i].velocity;
         const double rate = speed.squaredNorm();
         const double when = rate > 0 ? std::clamp(-apart.dot(speed) / rate, -half, half) : 0;
-        if ((apart + when * speed).squaredNorm() < reach * reach) candidates.push_back({i, j});
+        if ((apart + when * speed).squaredNorm() < most * most) candidates.push_back({i, j});
       });
     }
     cost.candidates += candidates.size();

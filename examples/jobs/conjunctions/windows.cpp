@@ -27,11 +27,11 @@ constexpr int windows_a_tick = 4;
 /// less than 10^-9. A larger number would let some more pairs be tested.
 constexpr double slack = 1e-6;
 
-/// Where an object is in a window: not farther than `reach` from a place, and nearer than `bend` to where it would be
+/// Where an object is in a window: not farther than `radius` from a place, and nearer than `bend` to where it would be
 /// if it went straight on from there, in the middle of the window.
 struct Stretch {
   Vector3d place, velocity;
-  double reach, bend;
+  double radius, bend;
 };
 
 Stretch stretch(const Path& path, double middle, double half) {
@@ -49,14 +49,14 @@ Stretch stretch(const Path& path, double middle, double half) {
 /// Whether two objects may come nearer than a distance within a window.
 bool may_come_near(const Stretch& a, const Stretch& b, double half, double distance) {
   const Vector3d apart = b.place - a.place;
-  const double farthest = a.reach + b.reach + distance + slack;
+  const double farthest = a.radius + b.radius + distance + slack;
   const double square = apart.squaredNorm();
   if (square > farthest * farthest) return false;
   const Vector3d velocity = b.velocity - a.velocity;
   const double rate = velocity.squaredNorm();
   const double when = rate > 0 ? std::clamp(-apart.dot(velocity) / rate, -half, half) : 0;
-  const double reach = a.bend + b.bend + distance + slack;
-  return (apart + when * velocity).squaredNorm() <= reach * reach;
+  const double most = a.bend + b.bend + distance + slack;
+  return (apart + when * velocity).squaredNorm() <= most * most;
 }
 
 /// All that happens to a pair from one time to another.
@@ -103,7 +103,7 @@ ScreeningCost screen_by_windows(std::span<const Elements> catalogue, const Scree
     double longest = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
       stretches[i] = stretch(paths[i], from + half, half);
-      longest = std::max(longest, stretches[i].reach);
+      longest = std::max(longest, stretches[i].radius);
     }
     candidates.clear();
     cells.clear(2 * (2 * longest + options.distance + slack));

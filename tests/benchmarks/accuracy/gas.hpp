@@ -22,25 +22,25 @@ using Vector3l = Eigen::Matrix<Long, 3, 1>;
 
 struct GasOptions {
   std::size_t balls = 64;
-  double packing = 0.15;      ///< volume of the balls over that of the box
-  double speed = 1;           ///< units / s
-  double mass_ratio = 1;      ///< of the heaviest to the lightest; each ball is one or the other if > 1
-  double gravity = 0;         ///< units / s^2 along -z; needs degree 2
-  double start_time = 0;      ///< s
-  double offset = 0;          ///< coordinates of the corner of the box
+  double packing = 0.15;  ///< volume of the balls over that of the box
+  double speed = 1;       ///< units / s
+  double mass_ratio = 1;  ///< of the heaviest to the lightest; each ball is one or the other if > 1
+  double gravity = 0;     ///< units / s^2 along -z; needs degree 2
+  double start_time = 0;  ///< s
+  double offset = 0;      ///< coordinates of the corner of the box
   std::uint64_t seed = 1;
 };
 
 /// What contacts of balls did, one by one and in sum.
 struct Drift {
   std::uint64_t contacts = 0;
-  Long energy = 0;        ///< sum of the changes at contacts over the energy at the start
-  Long energy_square = 0; ///< sum of their squares
-  Long worst_energy = 0;  ///< greatest change at one contact, over the energy of the two balls
+  Long energy = 0;                               ///< sum of the changes at contacts over the energy at the start
+  Long energy_square = 0;                        ///< sum of their squares
+  Long worst_energy = 0;                         ///< greatest change at one contact, over the energy of the two balls
   Long pair_energy = 0, pair_energy_square = 0;  ///< sums of changes over the energy of the two balls
-  Vector3l momentum = Vector3l::Zero();  ///< sum of the changes at contacts
+  Vector3l momentum = Vector3l::Zero();          ///< sum of the changes at contacts
   Long momentum_square = 0;
-  Long all_energy = 0;    ///< total now less total at the start, over the total at the start: walls and restarts too
+  Long all_energy = 0;  ///< total now less total at the start, over the total at the start: walls and restarts too
 };
 
 template <int Degree>
@@ -89,9 +89,9 @@ class Gas final : private kds::collision::WorldListener<Degree> {
         for (int d = 0; d < 3; ++d) at[d] = random.between(r, filling.side - r);
         free = true;
         for (std::size_t j = 0; j < filling.bodies.size() && free; ++j) {
-          const double reach = (r + radii[j]) * (1 + 1e-6);
+          const double sum_of_radii = (r + radii[j]) * (1 + 1e-6);
           free = (filling.bodies[j].motion[0].coefficients[0] - Vector3d::Constant(o.offset) - at).squaredNorm() >
-                 reach * reach;
+                 sum_of_radii * sum_of_radii;
         }
       }
       kds::collision::BodyDescription<Degree> body;

@@ -90,8 +90,8 @@ inline Scene<1> bullets(std::size_t bodies, std::uint64_t seed) {
     for (int d = 3; d-- > 0;) at[d] = random.between(0, side);
     bool free = true;
     for (const auto& other : scene.bodies) {
-      const double reach = radius + std::get<Sphere>(other.shape).radius;
-      free = free && (other.motion[0].coefficients[0] - at).squaredNorm() > reach * reach * (1 + 1e-6);
+      const double sum_of_radii = radius + std::get<Sphere>(other.shape).radius;
+      free = free && (other.motion[0].coefficients[0] - at).squaredNorm() > sum_of_radii * sum_of_radii * (1 + 1e-6);
     }
     if (!free) continue;
     BodyDescription<1> body;

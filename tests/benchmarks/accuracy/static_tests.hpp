@@ -21,10 +21,10 @@ using kds::collision::PlacedShape;
 template <class Visit>
 void box_axes(const PlacedShape& a, const PlacedShape& b, const Vector3d& r, const Visit& visit) {
   const auto overlap = [&](const Vector3d& axis) {
-    double reach = 0;
-    for (const auto& u : a.half_axes) reach += std::abs(axis.dot(u));
-    for (const auto& u : b.half_axes) reach += std::abs(axis.dot(u));
-    return reach - std::abs(axis.dot(r));
+    double half_widths = 0;
+    for (const auto& u : a.half_axes) half_widths += std::abs(axis.dot(u));
+    for (const auto& u : b.half_axes) half_widths += std::abs(axis.dot(u));
+    return half_widths - std::abs(axis.dot(r));
   };
   for (const PlacedShape* box : {&a, &b}) {
     for (int d = 0; d < 3; ++d) {
@@ -44,8 +44,8 @@ void box_axes(const PlacedShape& a, const PlacedShape& b, const Vector3d& r, con
 inline bool overlap(const PlacedShape& a, const PlacedShape& b, const Vector3d& r) {
   using namespace kds::collision;
   if (const auto* ball = std::get_if<Sphere>(&a.shape)) {
-    const double reach = ball->radius + std::get<Sphere>(b.shape).radius;
-    return r.squaredNorm() < reach * reach;
+    const double sum_of_radii = ball->radius + std::get<Sphere>(b.shape).radius;
+    return r.squaredNorm() < sum_of_radii * sum_of_radii;
   }
   if (std::holds_alternative<Box>(a.shape)) {
     bool apart = false;

@@ -78,9 +78,9 @@ void Gauge::look(double t, double seconds, const std::vector<Vector3d>& places,
                      radius + x[2] - pile_.space[2]});
     for (const FixedBox& box : pile_.boxes) deep = std::max(deep, depth_in_box(box, x, radius));
     for (std::size_t b = a + 1; b < balls.size(); ++b) {
-      const double reach = radius + balls[b].radius;
+      const double sum_of_radii = radius + balls[b].radius;
       const double squared = (places[b] - x).squaredNorm();
-      if (squared < reach * reach) deep = std::max(deep, reach - std::sqrt(squared));
+      if (squared < sum_of_radii * sum_of_radii) deep = std::max(deep, sum_of_radii - std::sqrt(squared));
     }
   }
   outcome_.overlap = deep;

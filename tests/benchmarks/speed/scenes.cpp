@@ -32,8 +32,8 @@ class Placement {
         const std::array<std::int64_t, 3> cell{home[0] + k % 3 - 1, home[1] + k / 3 % 3 - 1, home[2] + k / 9 - 1};
         for (std::int32_t i = levels_[level][bucket(cell)]; i >= 0; i = next_[static_cast<std::size_t>(i)]) {
           const auto& [centre, r] = placed_[static_cast<std::size_t>(i)];
-          const double reach = (radius + r) * (1 + 1e-9);  // not in touch either, whoever rounds how
-          if ((centre - at).squaredNorm() <= reach * reach) return false;
+          const double sum_of_radii = (radius + r) * (1 + 1e-9);  // not in touch either, whoever rounds how
+          if ((centre - at).squaredNorm() <= sum_of_radii * sum_of_radii) return false;
         }
       }
     }
@@ -144,9 +144,12 @@ double normal(Random& random) {
 
 const char* name(Flatness flatness) {
   switch (flatness) {
-    case Flatness::cube: return "cube";
-    case Flatness::slab: return "slab";
-    case Flatness::line: return "line";
+    case Flatness::cube:
+      return "cube";
+    case Flatness::slab:
+      return "slab";
+    case Flatness::line:
+      return "line";
   }
   return "?";
 }

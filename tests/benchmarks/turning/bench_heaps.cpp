@@ -121,9 +121,9 @@ class Heap {
       const double length = axis.norm();
       if (length < 1e-6) return;  // of two parallel edges
       const Vector3d u = axis / length;
-      const double reach =
+      const double half_widths =
           a.half.dot((a.axes.transpose() * u).cwiseAbs()) + b.half.dot((b.axes.transpose() * u).cwiseAbs());
-      most = std::max(most, std::abs(u.dot(a.centre - b.centre)) - reach);
+      most = std::max(most, std::abs(u.dot(a.centre - b.centre)) - half_widths);
     };
     for (int d = 0; d < 3; ++d) {
       along(a.axes.col(d)), along(b.axes.col(d));

@@ -41,8 +41,8 @@ bool overlap(const Query& query, double t) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
       const int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
-      const double reach = p[i1] * size(i2, j) + p[i2] * size(i1, j) + q[j1] * size(i, j2) + q[j2] * size(i, j1);
-      if (std::abs(way[i2] * between(i1, j) - way[i1] * between(i2, j)) > reach) return false;
+      const double greatest = p[i1] * size(i2, j) + p[i2] * size(i1, j) + q[j1] * size(i, j2) + q[j2] * size(i, j1);
+      if (std::abs(way[i2] * between(i1, j) - way[i1] * between(i2, j)) > greatest) return false;
     }
   }
   return true;

@@ -69,14 +69,14 @@ TEST_CASE("Rounded boxes overlap where a ball in one may touch a ball in the oth
     const unsigned overlap = BoxOverlaps(bounds[0], rounding[0], bounds[1], rounding[1]).with(bounds[2], rounding[2]);
     for (const std::size_t i : {0, 1}) {
       const bool told = (overlap >> i & 1) != 0;
-      const std::int64_t reach = boxes[i].radius + boxes[2].radius;
+      const std::int64_t sum_of_radii = boxes[i].radius + boxes[2].radius;
       const std::int64_t gap = square_gap(boxes[i], boxes[2]);
       const bool as_boxes = boxes[i].scaled(scale).overlaps(boxes[2].scaled(scale));
-      missed += gap <= reach * reach && !told;
+      missed += gap <= sum_of_radii * sum_of_radii && !told;
       // A radius that is not a usual number of single precision is kept as less.
       const bool kept = std::abs(std::log2(scale)) < 95;
-      in_vain += told && (kept ? gap > reach * reach : !as_boxes);
-      touching += gap == reach * reach && reach > 0;
+      in_vain += told && (kept ? gap > sum_of_radii * sum_of_radii : !as_boxes);
+      touching += gap == sum_of_radii * sum_of_radii && sum_of_radii > 0;
       only_as_boxes += as_boxes && !told;
       lanes_differ +=
           told != ((BoxOverlaps(bounds[2], rounding[2], bounds[2], rounding[2]).with(bounds[i], rounding[i]) & 2) != 0);

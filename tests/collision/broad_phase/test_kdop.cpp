@@ -86,8 +86,8 @@ TEMPLATE_TEST_CASE_SIG("A slab holds its body from now on, and hardly more", "[k
           const Rational below = centre(t) + from - polynomial(slab.min)(t);
           const Rational above = polynomial(slab.max)(t) - centre(t) - to;
           // The sizes of terms, after so long and from so far back as the start may be.
-          const double reach = 3 + later;
-          const Rational slack = rational(0x1p-46) * rational(40 * (1 + reach + reach * reach));
+          const double farthest = 3 + later;
+          const Rational slack = rational(0x1p-46) * rational(40 * (1 + farthest + farthest * farthest));
           wrong += below.sign() < 0 || above.sign() < 0 || below > slack || above > slack;
         }
       };
@@ -119,7 +119,7 @@ TEST_CASE("Extents hold every vertex, and hardly more", "[kdop]") {
     const PlacedShape ball = place(Sphere{random.unit() + 0.1}, turn);
     for (const KdopDirection& direction : structures::kdop_directions(26)) {
       const Eigen::Vector3d d(direction.data());
-      const auto reach = [&](const Eigen::Vector3d& v) {
+      const auto along = [&](const Eigen::Vector3d& v) {
         return rational(d[0]) * rational(v[0]) + rational(d[1]) * rational(v[1]) + rational(d[2]) * rational(v[2]);
       };
       const auto check = [&](const PlacedShape& shape, const Rational& least, const Rational& greatest) {
@@ -129,17 +129,17 @@ TEST_CASE("Extents hold every vertex, and hardly more", "[kdop]") {
         wrong += least - rational(low) > slack || rational(high) - greatest > slack;
       };
       Rational sum;
-      for (const auto& half : box.half_axes) sum = sum + oracle::abs(reach(half));
+      for (const auto& half : box.half_axes) sum = sum + oracle::abs(along(half));
       check(box, -sum, sum);
       std::vector<Rational> reaches;
       const auto& mesh = *std::get<MeshShape>(ring.shape).mesh;
       for (const auto& v : mesh.placed_vertices(ring.rotation, std::get<MeshShape>(ring.shape).scale)) {
-        reaches.push_back(reach(v));
+        reaches.push_back(along(v));
       }
       check(ring, *std::min_element(reaches.begin(), reaches.end()), *std::max_element(reaches.begin(), reaches.end()));
       const double radius = ball.bounding_radius;
       const auto [low, high] = extent(ball, d);
-      wrong += low != -high || oracle::square(rational(high)) < reach(d) * oracle::square(rational(radius));
+      wrong += low != -high || oracle::square(rational(high)) < along(d) * oracle::square(rational(radius));
       wrong += high > radius * d.norm() * (1 + 0x1p-40);
     }
   }

@@ -165,8 +165,8 @@ TEST_CASE("Thousands that come at once have the pairs of their fat boxes", "[bro
       motion.coefficients[0][d] = random.between(0, d == 2 ? 4 : 40);
       motion.coefficients[1][d] = i % 5 == 0 ? 0 : random.between(-1, 1);
     }
-    const Eigen::Vector3d reach = Eigen::Vector3d::Constant(i % 100 == 0 ? 3 : 0.5);
-    boxes.push_back(box_around(motion, -reach, reach));
+    const Eigen::Vector3d half_edges = Eigen::Vector3d::Constant(i % 100 == 0 ? 3 : 0.5);
+    boxes.push_back(box_around(motion, -half_edges, half_edges));
   }
   std::vector<BroadPhase<1>::Entry> entries;
   for (std::size_t i = 0; i < count; ++i) entries.push_back({static_cast<BodySlot>(3 * (count - i)), &boxes[i]});

@@ -207,8 +207,8 @@ TEST_CASE("convex shapes: the points are theirs, and nothing is nearer", "[shape
     CAPTURE(seed);
     Random random(seed);
     const PlacedShape a = random_convex(random), b = random_convex(random);
-    const double reach = a.bounding_radius + b.bounding_radius;
-    Vector3d centre = random.vector(reach * (random.below(4) == 0 ? 100 : 1));
+    const double sum_of_radii = a.bounding_radius + b.bounding_radius;
+    Vector3d centre = random.vector(sum_of_radii * (random.below(4) == 0 ? 100 : 1));
     ShapeDistance found = shape_distance(a, b, centre);
     if (found.distance > 0 && random.below(2) == 0) {  // and brought to where they nearly touch
       centre -= (1 - std::ldexp(1.0, -static_cast<int>(random.below(40)))) * (found.of_b - found.of_a);

@@ -141,11 +141,11 @@ TEST_CASE("Partition: how far boxes are outside a cell, and how far they reach o
     return StaticBox{{x - half, -half, z - half}, {x + half, half, z + half}};
   };
   CHECK(outside(box(5, 0, 1), cell) == 0);
-  CHECK(reach_outside(box(5, 0, 1), cell) == 0);
+  CHECK(farthest_outside(box(5, 0, 1), cell) == 0);
   CHECK(outside(box(10, 0, 1), cell) == 0);
-  CHECK(reach_outside(box(10, 0, 1), cell) == 1);
+  CHECK(farthest_outside(box(10, 0, 1), cell) == 1);
   CHECK(outside(box(13, 8, 1), cell) == 3);
-  CHECK(reach_outside(box(13, 8, 1), cell) == 5);
+  CHECK(farthest_outside(box(13, 8, 1), cell) == 5);
   CHECK(outside(Vector3d(-2, 100, 5), cell) == 2);
   CHECK(inside(Vector3d(3, 100, 3), cell) == 1);
   CHECK(inside(Vector3d(-3, 100, 3), cell) == -3);

@@ -69,11 +69,11 @@ class Gas {
         const auto around = [&](int axis, Real distance) {
           return period_[axis] > 0 ? std::lround(-distance / period_[axis]) : 0L;
         };
-        const auto reach = [&](int axis) { return period_[axis] > 0 ? 1L : 0L; };
-        for (long y = around(1, apart[1]) - reach(1); y <= around(1, apart[1]) + reach(1); ++y) {
+        const auto images = [&](int axis) { return period_[axis] > 0 ? 1L : 0L; };
+        for (long y = around(1, apart[1]) - images(1); y <= around(1, apart[1]) + images(1); ++y) {
           const Real slid = y * sliding_ * time_;
-          for (long x = around(0, apart[0] + slid) - reach(0); x <= around(0, apart[0] + slid) + reach(0); ++x) {
-            for (long z = around(2, apart[2]) - reach(2); z <= around(2, apart[2]) + reach(2); ++z) {
+          for (long x = around(0, apart[0] + slid) - images(0); x <= around(0, apart[0] + slid) + images(0); ++x) {
+            for (long z = around(2, apart[2]) - images(2); z <= around(2, apart[2]) + images(2); ++z) {
               const Vector to{apart[0] + x * period_[0] + slid, apart[1] + y * period_[1], apart[2] + z * period_[2]};
               Vector speed = sum(balls_[b].v, balls_[a].v, -1);
               speed[0] += y * sliding_;

@@ -168,7 +168,7 @@ TEST_CASE("free rotation: about a principal axis, or not at all, nothing changes
       const RotationState state = turning(inertia, Quaterniond::Identity(), velocity);
       const FreeRotation rotation(inertia, state);
       CHECK(rotation.steady());
-      CHECK(rotation.reach() == kds::never);
+      CHECK(rotation.valid_until() == kds::never);
       CHECK(angular_velocity(inertia, state) == velocity);
     }
   }

@@ -72,9 +72,9 @@ double deepest(const World<2>& world) {
   double result = 0;
   for (BodyId a = 0; a < world.size(); ++a) {
     for (BodyId b = a + 1; b < world.size(); ++b) {
-      const double reach = radius_of(world, a) + radius_of(world, b);
+      const double sum_of_radii = radius_of(world, a) + radius_of(world, b);
       const double apart = (world.motion(a).position(world.now()) - world.motion(b).position(world.now())).norm();
-      result = std::max(result, (reach - apart) / std::min(radius_of(world, a), radius_of(world, b)));
+      result = std::max(result, (sum_of_radii - apart) / std::min(radius_of(world, a), radius_of(world, b)));
     }
   }
   return result;

@@ -86,9 +86,9 @@ TEMPLATE_TEST_CASE_SIG("k-DOPs of bodies that bring boxes of their own, or spher
       description.orientation = maker.orientation();
       if (i % 3 == 0) description.volume = BoundingVolume::sphere;
       if (i % 3 == 1) {
-        const double reach = place(description.shape, description.orientation).bounding_radius;
-        description.box = [reach](double t, const certificates::PointMotion<Degree>& motion) {
-          auto box = box_around(motion, Vector3d::Constant(-reach), Vector3d::Constant(reach));
+        const double radius = place(description.shape, description.orientation).bounding_radius;
+        description.box = [radius](double t, const certificates::PointMotion<Degree>& motion) {
+          auto box = box_around(motion, Vector3d::Constant(-radius), Vector3d::Constant(radius));
           box.valid_until = t + 0.3;
           return box;
         };

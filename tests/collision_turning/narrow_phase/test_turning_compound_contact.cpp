@@ -61,12 +61,18 @@ Compound random_compound(Random& random) {
 
 Shape random_other(Random& random) {
   switch (random.below(6)) {
-    case 0: return Sphere{random.between(0.2, 1)};
-    case 1: return Box{Vector3d(0.5, random.between(0.1, 1), 0.5)};
-    case 2: return Capsule{random.between(0.1, 0.5), 0.5};
-    case 3: return random_hull(random);
-    case 4: return MeshShape{samples::torus(5, 3)};
-    default: return random_compound(random);
+    case 0:
+      return Sphere{random.between(0.2, 1)};
+    case 1:
+      return Box{Vector3d(0.5, random.between(0.1, 1), 0.5)};
+    case 2:
+      return Capsule{random.between(0.1, 0.5), 0.5};
+    case 3:
+      return random_hull(random);
+    case 4:
+      return MeshShape{samples::torus(5, 3)};
+    default:
+      return random_compound(random);
   }
 }
 
@@ -150,9 +156,8 @@ TEST_CASE("turning compounds: parts that are left out do not meet", "[narrow-pha
     const TurningPartPairs<2> pairs(a.body(), b.body(), 0, horizon);
     each_pair(a, b, [&](const auto& x, const auto& y) {
       ++all;
-      const auto it = std::find_if(pairs.all().begin(), pairs.all().end(), [&](const auto& pair) {
-        return pair.a == &x.shape && pair.b == &y.shape;
-      });
+      const auto it = std::find_if(pairs.all().begin(), pairs.all().end(),
+                                   [&](const auto& pair) { return pair.a == &x.shape && pair.b == &y.shape; });
       const bool there = it != pairs.all().end();
       left += there;
       const double found = first_contact(x, y, 0, horizon, ContactMode::transparent);
@@ -227,12 +232,12 @@ TEST_CASE("turning compounds: parts far from the centre, fast", "[narrow-phase][
   const std::vector<CompoundPart> arm{{Box{{0.5, 0.5, 0.5}}, {100, 0, 0}}, {Box{{0.1, 0.1, 0.1}}}};
   for (const double rate : {0.01, 1.0, 100.0}) {
     const Solid<1> a{compound(arm), motion_of<1>(zero, zero, {0, 0, rate})};
-    const double angle = 1, reach = std::asin(0.005);  // of the face that leads
+    const double angle = 1, corner = std::asin(0.005);  // of the face that leads
     const Vector3d at(100 * std::cos(angle), 100 * std::sin(angle), 0);
     const Solid<1> point{Sphere{1e-9}, motion_of<1>(at, zero, zero)};
     const double found = first_meeting(a, point, 0, 4 / rate);
     INFO("rate " << rate);
-    CHECK(std::abs(found * rate - (angle - reach)) < 1e-6);
+    CHECK(std::abs(found * rate - (angle - corner)) < 1e-6);
     const Solid<1> beside{Sphere{1e-9}, motion_of<1>(at * 0.994, zero, zero)};
     CHECK(first_meeting(a, beside, 0, 50 / rate) == never);
   }

@@ -140,14 +140,14 @@ template <int Degree>
 void check_meeting(const Solid<Degree>& plane, const Solid<Degree>& body, double horizon, int samples, int& meetings) {
   const double found = first_meeting(plane, body, 0, horizon);
   CHECK(first_meeting(body, plane, 0, horizon) == found);
-  const auto reach = [&](const Solid<Degree>& s) {
+  const auto size = [&](const Solid<Degree>& s) {
     return s.motion.path.position(0).norm() + s.motion.path.velocity(0).norm() * horizon;
   };
   const double radius = body.placed.bounding_radius;
   const double speed = plane.motion.path.velocity(0).norm() + body.motion.path.velocity(0).norm() + 4 * horizon +
                        radius * body.motion.angular_velocity.norm();
   const double tolerance =
-      1e-13 * (1 + radius + reach(plane) + reach(body)) + 2e-15 * speed * (horizon - body.motion.start());
+      1e-13 * (1 + radius + size(plane) + size(body)) + 2e-15 * speed * (horizon - body.motion.start());
   const Height<Degree> height(plane, body);
   const auto verdict = kds::tests::check_first_time(height, 0, horizon, found, tolerance, samples);
   CHECK_FALSE(verdict.missed);

@@ -293,8 +293,8 @@ TEST_CASE("triangles side by side are apart for as long as floats prove", "[turn
       for (Vector3d& corner : p[pair]) corner *= small;
       if (random.one_in(4)) q[pair][2] = q[pair][1];  // a needle
     }
-    const double t = random.between(0, 0.5), horizon = t + 1, reach = 1.75;
-    const NodesView<2> view(a, b, {a, b}, {1, 0, reach}, {1, 0, reach}, t, horizon);
+    const double t = random.between(0, 0.5), horizon = t + 1, farthest = 1.75;
+    const NodesView<2> view(a, b, {a, b}, {1, 0, farthest}, {1, 0, farthest}, t, horizon);
     TrianglesTogether triangles{};
     triangles.count = most_together;
     for (std::size_t pair = 0; pair < count; ++pair) {

@@ -104,19 +104,20 @@ void Maker::drop(std::size_t count, const Vector3d& min, const Vector3d& max) {
   double rise = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Description body = draw_body();
-    const double reach = collision::place(body.shape, body.orientation).bounding_radius * (1 + least_gap);
+    const double radius = collision::place(body.shape, body.orientation).bounding_radius * (1 + least_gap);
     const auto within = [&](int d) {
-      const double low = min[d] + reach, high = max[d] - reach;
+      const double low = min[d] + radius, high = max[d] - radius;
       return low < high ? random.between(low, high) : (min[d] + max[d]) / 2;
     };
     for (int attempt = 1;; ++attempt) {
       const double x = within(0), z = within(2);
-      const Vector3d place(x, min[1] + reach + rise + random.between(0, std::max(max[1] - min[1] - 2 * reach, 0.0)), z);
+      const Vector3d place(x, min[1] + radius + rise + random.between(0, std::max(max[1] - min[1] - 2 * radius, 0.0)),
+                           z);
       if (has_room(body, place)) {
         add(body, place, Vector3d(random.between(-speed, speed), 0, random.between(-speed, speed)));
         break;
       }
-      if (attempt % tries == 0) rise += reach;
+      if (attempt % tries == 0) rise += radius;
     }
   }
 }

@@ -84,7 +84,7 @@ Style draw_style(Random& random, Response response) {
   Style style;
   style.numbers = numbers[random.below(numbers.size())];
   style.shapes = shapes[random.below(shapes.size())];
-  style.reach = reaches[random.below(reaches.size())];
+  style.half_side = reaches[random.below(reaches.size())];
   style.restitution = response == Response::none ? 1 : restitutions[random.below(restitutions.size())];
   style.scripts = random.one_in(3);
   style.jumps_in_scripts = random.one_in(2);
@@ -98,7 +98,7 @@ Style draw_style(Random& random, Response response) {
 
 Path draw_path(Random& random, const Style& style) {
   Path path;
-  path.place = draw_vector(random, style.numbers, style.reach);
+  path.place = draw_vector(random, style.numbers, style.half_side);
   if (!random.one_in(3)) path.velocity = draw_vector(random, style.numbers, 3);
   if (!random.one_in(3)) path.half_acceleration = draw_vector(random, style.numbers, 1);
   if (random.one_in(6)) path.velocity[1] = path.velocity[2] = 0;

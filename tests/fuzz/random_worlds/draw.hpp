@@ -23,7 +23,7 @@ enum class Shapes : std::uint8_t { balls, boxes, balls_and_boxes, meshes, all };
 struct Style {
   Numbers numbers = Numbers::lattice;
   Shapes shapes = Shapes::balls;
-  double reach = 3;  ///< centres start within it, coordinate by coordinate
+  double half_side = 3;  ///< centres start within it, coordinate by coordinate
   double restitution = 1;
   bool scripts = false;
   bool jumps_in_scripts = false;

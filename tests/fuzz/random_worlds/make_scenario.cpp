@@ -70,7 +70,7 @@ void draw_options(Random& random, const Style& style, Scenario& scenario) {
   constexpr std::array intervals{1e-9, 1e-9, 1e-3, 0.25, 0.0};
   constexpr std::array contacts{100u, 100u, 5u, 1u};
   scenario.walls = random.one_in(2);
-  scenario.wall = {style.reach + 2, restitutions[random.below(restitutions.size())]};
+  scenario.wall = {style.half_side + 2, restitutions[random.below(restitutions.size())]};
   scenario.report_pairs = random.one_in(3);
   scenario.report_pieces = random.one_in(2);
   scenario.unit = units[random.below(units.size())];
@@ -99,13 +99,13 @@ DrawnScenario make_scenario(std::uint64_t seed) {
 
   const Size size = draw_size_of_scenario(random);
   if (size != Size::few) scenario.most_alive = 400, scenario.most_events = 2000;
-  if (size == Size::many) style.reach += 3;
+  if (size == Size::many) style.half_side += 3;
   if (size == Size::lattice) {
     scenario.report_pairs = false;
-    style.reach += 4;
+    style.half_side += 4;
     add_lattice(random, style, scenario);
   }
-  scenario.wall.reach = style.reach + 2;
+  scenario.wall.half_side = style.half_side + 2;
   int bodies = size == Size::few ? random.integer(2, random.one_in(2) ? 5 : 10) : 0;
   if (size == Size::many) bodies = random.integer(20, 90);
   for (; bodies > 0; --bodies) add(scenario, draw_body(random, style));

@@ -102,7 +102,7 @@ WorldOptions Player<Degree>::options(BroadPhaseKind broad_phase) const {
   result.zeno = {scenario_.zeno_contacts, scenario_.zeno_interval};
   result.most_edits = most_edits;
   if (scenario_.walls) {
-    const Vector3d corner = Vector3d::Constant(scenario_.wall.reach * scenario_.unit);
+    const Vector3d corner = Vector3d::Constant(scenario_.wall.half_side * scenario_.unit);
     result.walls = collision::Walls{-corner, corner, scenario_.wall.restitution};
   }
   return result;

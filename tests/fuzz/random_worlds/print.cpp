@@ -182,7 +182,7 @@ void print_options(const Scenario& scenario, const Way& way) {
     std::printf(
         "  const Vector3d corner = Vector3d::Constant(p.length * %s);\n  p.options.walls = Walls{-corner, corner, "
         "%s};\n",
-        number(scenario.wall.reach).c_str(), number(scenario.wall.restitution).c_str());
+        number(scenario.wall.half_side).c_str(), number(scenario.wall.restitution).c_str());
   }
   std::printf(
       "  p.options.broad_phase = BroadPhaseKind::all_pairs;\n  if (other) {\n"

@@ -81,10 +81,9 @@ struct Call {
   std::uint32_t collides_with = ~0u;
 };
 
-inline constexpr std::string_view call_names[] = {"add",    "remove",        "move",    "turn_back", "keep",
-                                                  "follow", "away_and_back", "filter",  "group",     "ignore",
-                                                  "attach", "weigh",         "append",  "ring",      "push_off",
-                                                  "advance", "save",         "fail"};
+inline constexpr std::string_view call_names[] = {
+    "add",    "remove", "move",  "turn_back", "keep", "follow",   "away_and_back", "filter", "group",
+    "ignore", "attach", "weigh", "append",    "ring", "push_off", "advance",       "save",   "fail"};
 
 /// Which event of a log: the `count`th of its kind and bodies.
 struct EventKey {
@@ -103,7 +102,7 @@ struct Reaction {
 
 /// Sides and restitution of the walls: a cube about the origin.
 struct WallPlan {
-  double reach = 8;
+  double half_side = 8;
   double restitution = 1;
 };
 

@@ -181,9 +181,9 @@ Shape random_hull(Random& random) {
 /// In place of a box a capsule whose end goes round at the distance at which the corner of the box does.
 void make_end_of_box(Shape& shape, kds::certificates::RigidMotion<2>& motion, Random& random) {
   const Vector3d half = std::get<Box>(shape).half_extents;
-  const double reach = std::sqrt(half[0] * half[0] + half[1] * half[1]);
-  const double radius = reach * random.between(0.05, 0.5);
-  shape = Capsule{radius, reach - radius};
+  const double half_diagonal = std::sqrt(half[0] * half[0] + half[1] * half[1]);
+  const double radius = half_diagonal * random.between(0.05, 0.5);
+  shape = Capsule{radius, half_diagonal - radius};
   motion.orientation = Eigen::Quaterniond(1, 1, 0, 0);  // across the axis about which it turns
 }
 
@@ -252,25 +252,25 @@ Shape with_more_parts(const Shape& shape, std::size_t family, Random& random) {
     if (across == 2) parts.push_back({Box{0.5 * half}, {0, 0, random.between(-2, 2)}});
     return kds::collision::compound(parts);
   }
-  const bool can_be_part =
-      box || std::holds_alternative<ConvexHull>(shape) || std::holds_alternative<MeshShape>(shape);
+  const bool can_be_part = box || std::holds_alternative<ConvexHull>(shape) || std::holds_alternative<MeshShape>(shape);
   if (family == linked || family == grazing) {
     return can_be_part ? Shape(kds::collision::compound(std::vector{CompoundPart{shape}})) : shape;
   }
-  const double reach = random.one_in(8) ? 8 : 1;
+  const double farthest = random.one_in(8) ? 8 : 1;
   if (can_be_part) {
-    parts.push_back({shape, random.one_in(2) ? Vector3d(Vector3d::Zero()) : Vector3d(reach * direction(random))});
+    parts.push_back({shape, random.one_in(2) ? Vector3d(Vector3d::Zero()) : Vector3d(farthest * direction(random))});
   }
   const std::uint64_t more = 1 + random.below(3);
   for (std::uint64_t i = 0; i < more; ++i) {
-    CompoundPart part{Box{Vector3d(0.25, 0.5, 0.25)}, reach * random.between(0, 1) * direction(random)};
+    CompoundPart part{Box{Vector3d(0.25, 0.5, 0.25)}, farthest * random.between(0, 1) * direction(random)};
     if (family == parallel) {
       part.position = (2 * part.position).array().round() / 2;
     } else {
-      part.shape = random.one_in(3)   ? random_hull(random)
-                   : random.one_in(3) ? Shape(triangle(random, random.one_in(4)))
-                                      : Shape(Box{Vector3d(random.between(0.05, 0.5), random.between(0.05, 0.5),
-                                                           random.between(0.05, 0.5))});
+      part.shape =
+          random.one_in(3) ? random_hull(random)
+          : random.one_in(3)
+              ? Shape(triangle(random, random.one_in(4)))
+              : Shape(Box{Vector3d(random.between(0.05, 0.5), random.between(0.05, 0.5), random.between(0.05, 0.5))});
       if (random.one_in(2)) {
         const Vector3d v = direction(random);
         part.orientation = Eigen::Quaterniond(random.between(-1, 1), v[0], v[1], v[2]).normalized();

@@ -136,7 +136,7 @@ class Pair {
     see(seen_a_, a, a_), see(seen_b_, b, b_);
     way_ = sum(b_.origin, a_.origin, -1);
     radii_ = a.radius + b.radius;
-    const Number of_a = reach(a), of_b = reach(b);
+    const Number of_a = radius_of(a), of_b = radius_of(b);
     error_ = 0x1p-50L * (length(way_) + of_a + of_b + radii_);
     bend_ = acceleration_ + a_.rate() * a_.rate() * of_a + b_.rate() * b_.rate() * of_b;
     best_ = {-infinity, {}};
@@ -172,7 +172,7 @@ class Pair {
   Number error() const { return error_; }
   /// How fast points of the two may move past each other.
   Number speed(const Piece& a, const Piece& b) const {
-    return length(a_.velocity) + length(b_.velocity) + a_.rate() * reach(a) + b_.rate() * reach(b);
+    return length(a_.velocity) + length(b_.velocity) + a_.rate() * radius_of(a) + b_.rate() * radius_of(b);
   }
 
  private:
@@ -181,10 +181,10 @@ class Pair {
     Vector n;
   };
 
-  static Number reach(const Piece& piece) {
-    Number reach = 0;
-    for (const Vector& x : piece.points) reach = std::max(reach, length(x));
-    return reach;
+  static Number radius_of(const Piece& piece) {
+    Number radius = 0;
+    for (const Vector& x : piece.points) radius = std::max(radius, length(x));
+    return radius;
   }
   static Vector middle(const Seen& piece) {
     Vector sum_of{};

@@ -173,9 +173,9 @@ class FrameArena {
   /// When the two meet in [from, to]; `from` if they overlap then.
   double meeting(const Body& a, const Body& b, double from, double) {
     ++tests_;
-    constexpr double reach = Arena::bullet_radius + Arena::target_radius;
+    constexpr double sum_of_radii = Arena::bullet_radius + Arena::target_radius;
     const Vector3d r = b.at(from) - a.at(from), v = b.velocity - a.velocity;
-    const double c = r.squaredNorm() - reach * reach;
+    const double c = r.squaredNorm() - sum_of_radii * sum_of_radii;
     if (c < 0) return from;
     const double h = r.dot(v), q = v.squaredNorm();
     const double discriminant = h * h - q * c;

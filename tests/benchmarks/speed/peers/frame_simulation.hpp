@@ -62,15 +62,15 @@ class FrameSimulation {
   struct Ball {
     Eigen::Vector3d position, velocity;
     double radius;
-    double since;                ///< s; of `position`
+    double since;  ///< s; of `position`
     double wall_time = never;
     int wall_axis = 0;
-    std::uint32_t version = 0;   ///< motions so far: what was predicted for an older one is void
-    bool renewed = false;        ///< its box in the broad phase is that of a motion it has no more
+    std::uint32_t version = 0;  ///< motions so far: what was predicted for an older one is void
+    bool renewed = false;       ///< its box in the broad phase is that of a motion it has no more
   };
   struct Event {
     double time;
-    std::uint32_t a, b;          ///< b == a: the wall
+    std::uint32_t a, b;  ///< b == a: the wall
     std::uint32_t version_a, version_b;
     bool operator<(const Event& other) const { return time > other.time; }  // the earliest on top
   };
@@ -143,8 +143,8 @@ class FrameSimulation {
     const Eigen::Vector3d w = b.velocity - a.velocity;
     const double closing = d.dot(w);
     if (!(closing < 0)) return;
-    const double reach = a.radius + b.radius;
-    const double gap = d.squaredNorm() - reach * reach;
+    const double sum_of_radii = a.radius + b.radius;
+    const double gap = d.squaredNorm() - sum_of_radii * sum_of_radii;
     double time = from;
     if (gap > 0) {
       const double discriminant = closing * closing - w.squaredNorm() * gap;
