@@ -179,7 +179,7 @@ void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::
 }
 
 /// Keeps the nearest points of many pairs of parts.
-class Nearest {
+class NearestParts {
  public:
   /// Goes down both trees, the nearer boxes first.
   void take(const Part& a, const Part& b) {
@@ -244,7 +244,7 @@ class Nearest {
 };
 
 /// The lowest point of a part along a normal, and how high it is.
-struct Lowest {
+struct LowestOfParts {
   double height = std::numeric_limits<double>::infinity();
   Vector3d point = Vector3d::Zero();
 
@@ -258,13 +258,13 @@ struct Lowest {
   }
 };
 
-Lowest lowest_of(const Part& part, const Vector3d& normal) {
-  Lowest lowest;
+LowestOfParts lowest_of(const Part& part, const Vector3d& normal) {
+  LowestOfParts lowest;
   std::vector<std::uint32_t> waiting{0};
   while (!waiting.empty()) {
     const std::uint32_t node = waiting.back();
     waiting.pop_back();
-    if (Lowest of_volume = lowest; !of_volume.take(part.volume(node), normal)) continue;
+    if (LowestOfParts of_volume = lowest; !of_volume.take(part.volume(node), normal)) continue;
     if (part.is_leaf(node)) {
       for (const Convex& convex : part.contents(node)) lowest.take(convex, normal);
     } else {
@@ -278,9 +278,10 @@ Lowest lowest_of(const Part& part, const Vector3d& normal) {
 ShapeDistance distance_from_half_space(const HalfSpace& half_space, const PlacedShape& shape, double t) {
   std::vector<Part> parts;
   add_parts(shape, Vector3d::Zero(), t, parts);
-  Lowest lowest;
+  LowestOfParts lowest;
   for (const Part& part : parts) {
-    if (const Lowest of_part = lowest_of(part, half_space.normal); of_part.height < lowest.height) lowest = of_part;
+    if (const LowestOfParts of_part = lowest_of(part, half_space.normal); of_part.height < lowest.height)
+      lowest = of_part;
   }
   const double distance = std::max(0.0, lowest.height - half_space.offset);
   return {distance, lowest.point - distance * half_space.normal, lowest.point};
@@ -327,7 +328,7 @@ ShapeDistance shape_distance(const PlacedShape& a, const PlacedShape& b, const V
   std::vector<Part> of_a, of_b;
   add_parts(a, Vector3d::Zero(), t, of_a);
   add_parts(b, centre_of_b, t, of_b);
-  Nearest nearest;
+  NearestParts nearest;
   for (const Part& part_of_a : of_a) {
     for (const Part& part_of_b : of_b) nearest.take(part_of_a, part_of_b);
   }
