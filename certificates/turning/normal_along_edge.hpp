@@ -41,8 +41,7 @@ struct NormalAlongEdge {
   Number value_at_start(double) const {
     const VectorOf<Number> normal =
         cross(difference_of<Number>(corners[0], corners[1]), difference_of<Number>(corners[0], corners[2]));
-    return dot(Turner<Number>(a).at_start(normal),
-               Turner<Number>(b).at_start(difference_of<Number>(edge[0], edge[1])));
+    return dot(Turner<Number>(a).at_start(normal), Turner<Number>(b).at_start(difference_of<Number>(edge[0], edge[1])));
   }
 
   /// Error bound, with u = 2^-53 and lengths bounded by sums of magnitudes, L1, L2 of the edges of the normal and L of

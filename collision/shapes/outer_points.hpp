@@ -12,9 +12,9 @@ namespace kds::collision {
 
 class ObbTree;
 
-/// Points whose convex hull holds a shape but for roundings: each coordinate is that of an exact one rounded to a float,
-/// so it is off by 2^-24 of itself. They stand in floats, side by side, eight of them at a time: the last place is
-/// repeated until their number is a multiple of eight.
+/// Points whose convex hull holds a shape but for roundings: each coordinate is that of an exact one rounded to a
+/// float, so it is off by 2^-24 of itself. They stand in floats, side by side, eight of them at a time: the last place
+/// is repeated until their number is a multiple of eight.
 class OuterPoints {
  public:
   static constexpr std::size_t most = 64;
@@ -32,8 +32,8 @@ class OuterPoints {
   std::size_t size_ = 0, added_ = 0;
 };
 
-/// Of the triangles of a tree, in its unit: their corners, if these are no more than OuterPoints::most, else the corners
-/// of the boxes three levels below the root.
+/// Of the triangles of a tree, in its unit: their corners, if these are no more than OuterPoints::most, else the
+/// corners of the boxes three levels below the root.
 OuterPoints outer_points(const ObbTree& tree, std::span<const Eigen::Vector3d> vertices);
 
 }  // namespace kds::collision

@@ -281,8 +281,8 @@ bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int deriva
   return vanishes_throughout(derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
 }
 
-/// sign_after() where the derivative itself is zero at t. Mostly the next one is not, and doubles or double-doubles tell
-/// its sign, for less than it takes to tell whether the first is zero at all times.
+/// sign_after() where the derivative itself is zero at t. Mostly the next one is not, and doubles or double-doubles
+/// tell its sign, for less than it takes to tell whether the first is zero at all times.
 template <int Degree, int Harmonics>
 int turning_sign_after_zero(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
   const int next = derivative + 1;

@@ -9,9 +9,9 @@ namespace kds::collision::detail {
 /// A plane between the points of two bodies whose convex hulls hold them. Its normal does not turn; it moves and
 /// accelerates along it as the mean of the two points does that are nearest to it.
 ///
-/// Paper: [Gilbert88] section II for the normal: the point of the difference of the two hulls that is nearest to the origin is
-/// approached along the segments to its extreme points. Differs: a few steps, since any plane will do that is not much
-/// narrower than the widest gap.
+/// Paper: [Gilbert88] section II for the normal: the point of the difference of the two hulls that is nearest to the
+/// origin is approached along the segments to its extreme points. Differs: a few steps, since any plane will do that is
+/// not much narrower than the widest gap.
 ///
 /// Rounding: heights of points above the plane, their rates and bends are linear in the points, so what is true of the
 /// points of a body is true of all that is in their hull; the bound on third derivatives has to hold of what is in the
@@ -38,12 +38,14 @@ class PlaneBetween {
     // Of n . x for points x that turn: n . (w x x) is (n x w) . x.
     const Vector rate_a = cross(n_, turn_a), rate_b = cross(n_, turn_b);
     const Heights of_a = heights(view_.unit_a, n_, rate_a, cross(rate_a, turn_a));
-    const Heights of_b = heights(view_.unit_b, seen_from_b(n_), seen_from_b(rate_b), seen_from_b(cross(rate_b, turn_b)));
+    const Heights of_b =
+        heights(view_.unit_b, seen_from_b(n_), seen_from_b(rate_b), seen_from_b(cross(rate_b, turn_b)));
     const Vector x = point(a_, near_a_), y = point(b_, near_b_);
     const float way[3] = {dot(n_, way_), dot(n_, all<float>(view_.way_rate)), dot(n_, all<float>(view_.way_bend))};
     Floats least = all<Floats>(1);
     float plane[3];
     for (int i = 0; i < 3; ++i) plane[i] = 0.5F * (dot(of_a.along[i], x) + dot(of_b.along[i], y) + way[i]);
+    plane[0] -= 0.5F * view_.round;
     const Floats third = all<Floats>(view_.third[0]);
     const auto keep = [&](const PointsTogether& points, const Heights& of, float sense, const float(&from)[3])
         __attribute__((always_inline)) {
@@ -110,9 +112,7 @@ class PlaneBetween {
     return {most, 0};
   }
 
-  [[gnu::always_inline]] static float length_of(const Vector& v) {
-    return square_root(all<Floats>(dot(v, v)))[0];
-  }
+  [[gnu::always_inline]] static float length_of(const Vector& v) { return square_root(all<Floats>(dot(v, v)))[0]; }
 
   [[gnu::always_inline]] void find_normal() {
     constexpr int most_steps = 8;

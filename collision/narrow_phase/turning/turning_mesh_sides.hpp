@@ -125,7 +125,8 @@ class BoxOfPair : public SolidSide {
   explicit BoxOfPair(const Box& box) : half_(box.half_extents), node_(box_node(half_)) {
     const Eigen::Vector3d half(node_.half_extents[0], node_.half_extents[1], node_.half_extents[2]);
     for (int signs = 0; signs < 8; ++signs) {
-      outer_points_.add({signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]});
+      outer_points_.add(
+          {signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]});
     }
   }
 

@@ -46,10 +46,10 @@ struct ExactSigns {
 /// so that a way that is narrower than -error has a condition that is broken then; `fastest(frame, stretch)`, a bound
 /// on how fast widths change; `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
 /// `unsure_while_open`, the same of a way whose conditions hold just after the time of the frame; perhaps
-/// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are never all to be looked at; `apart_until(t, horizon)`, a proven time;
-/// `time_of_turning()`; perhaps `open_wait(frame, way, stretch)`, for how long a way that is open just after the time
-/// of the frame stays so for certain, `waits`, the same of each of its conditions by its number, and `stretch(frame,
-/// longest)`, how far these can be told.
+/// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are
+/// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
+/// way, stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the
+/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -183,7 +183,8 @@ class WaysApart {
   }
 
   /// Calls visit(way) for those that are no narrower than least(), the widest first, until it returns true. Thin ways
-  /// come last: signs of what is parallel but for roundings cost most, and where another way is open they are not asked.
+  /// come last: signs of what is parallel but for roundings cost most, and where another way is open they are not
+  /// asked.
   template <class Least, class Visit>
   void every_way(const Frame& frame, ByWay<double>& gap, const Least& least, const Visit& visit) const {
     std::vector<std::pair<int, double>> thin;
@@ -212,10 +213,12 @@ class WaysApart {
     const Frame& frame = this->frame(t);
     const double error = gaps(frame, gap);
     int found = none;
-    every_way(frame, gap, [error] { return -error; }, [&](int way) {
-      if (open(way, frame)) found = way;
-      return found != none;
-    });
+    every_way(
+        frame, gap, [error] { return -error; },
+        [&](int way) {
+          if (open(way, frame)) found = way;
+          return found != none;
+        });
     return found;
   }
 

@@ -53,7 +53,7 @@ TEST_CASE("no vertex of a mesh is beyond its outer points", "[shapes]") {
 TEST_CASE("outer points are repeated until there are a multiple of eight", "[shapes]") {
   OuterPoints points;
   CHECK(points.size() == 0);
-  for (int i = 0; i < 9; ++i) points.add({i, 0, -i});
+  for (int i = 0; i < 9; ++i) points.add(Vector3d(i, 0, -i));
   REQUIRE(points.size() == 16);
   for (std::size_t i = 0; i < 16; ++i) {
     CHECK(points.x()[i] == static_cast<float>(std::min<std::size_t>(i, 8)));
