@@ -45,6 +45,16 @@ struct EdgeEdgeSeparation {
     return f;
   }
 
+  template <class Number>
+  Number value_at_start(double t) const {
+    const Turner<Number> turn_a(a);
+    const Turner<Number> turn_b(b);
+    const VectorOf<Number> u = turn_a.at_start(difference_of<Number>(edge_a[0], edge_a[1]));
+    const VectorOf<Number> v = turn_b.at_start(difference_of<Number>(edge_b[0], edge_b[1]));
+    return dot(turn_a.at_start(moment<Number>(edge_a)), v) + dot(u, turn_b.at_start(moment<Number>(edge_b))) +
+           dot(cross(u, v), way_at<Number>(b.path, a.path, t));
+  }
+
   /// Error bound, with u = 2^-53 and lengths bounded by sums of magnitudes: L1, L2 for the edges, known to u, and
   /// turned with the errors r1, r2; their product errs by L1 L2 (r1 + r2 + 5 u) at most; G for the vector g between the
   /// points, with its error e: in all L1 L2 (e + G (r1 + r2 + 8 u + u)), and products of two errors; 16 u and 2^-500

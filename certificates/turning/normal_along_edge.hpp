@@ -37,6 +37,13 @@ struct NormalAlongEdge {
     return f;
   }
 
+  template <class Number>
+  Number value_at_start(double) const {
+    const VectorOf<Number> normal =
+        cross(difference_of<Number>(corners[0], corners[1]), difference_of<Number>(corners[0], corners[2]));
+    return dot(Turner<Number>(a).at_start(normal), Turner<Number>(b).at_start(difference_of<Number>(edge[0], edge[1])));
+  }
+
   /// Error bound, with u = 2^-53 and lengths bounded by sums of magnitudes, L1, L2 of the edges of the normal and L of
   /// the edge: the normal is known to 5 u L1 L2, the edge to u L; both are turned with the errors r1, r2, and their
   /// product errs by 3 u: L1 L2 L (r1 + r2 + 9 u), and products of two errors; 16 u is charged.

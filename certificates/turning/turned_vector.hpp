@@ -61,14 +61,16 @@ class Turner {
     const Number square = w_ * w_;
     const Number rest = dot(v_, v_);
     difference_ = square - rest;
-    scale_ = square + rest;
-    if (!still_) scale_ = scale_ * squared_rate_;
+    square_ = square + rest;
+    scale_ = still_ ? square_ : square_ * squared_rate_;
   }
 
   const Number& scale() const { return scale_; }
+  /// |q|^2, which is the scale of vectors that have not turned yet.
+  const Number& scale_at_start() const { return square_; }
 
   TurnedVector<Number> operator()(const VectorOf<Number>& b) const {
-    const VectorOf<Number> y = oriented(b);
+    const VectorOf<Number> y = at_start(b);
     TurnedVector<Number> result{};
     if (still_) {
       result[0] = y;
@@ -80,8 +82,8 @@ class Turner {
     return result;
   }
 
- private:
-  VectorOf<Number> oriented(const VectorOf<Number>& b) const {
+  /// |q|^2 R(q) b: a vector of the body that has not turned yet.
+  VectorOf<Number> at_start(const VectorOf<Number>& b) const {
     if (upright_) return b * difference_;
     const Number along = dot(v_, b);
     const VectorOf<Number> p = cross(v_, b);
@@ -93,6 +95,7 @@ class Turner {
     return y;
   }
 
+ private:
   Number w_;
   VectorOf<Number> v_;
   VectorOf<Number> velocity_;
@@ -100,6 +103,7 @@ class Turner {
   bool upright_;
   Number squared_rate_;
   Number difference_;  ///< q_w^2 - |v|^2
+  Number square_;      ///< |q|^2
   Number scale_;
 };
 

@@ -28,6 +28,13 @@ VectorOf<Polynomial<Order, Number>> way_between(const PointMotion<Degree>& a, co
   return way;
 }
 
+/// b - a at a time.
+template <class Number, int Degree>
+VectorOf<Number> way_at(const PointMotion<Degree>& a, const PointMotion<Degree>& b, double t) {
+  const auto way = relative_motion<Number>(a, b, t);
+  return {way[0].c[0], way[1].c[0], way[2].c[0]};
+}
+
 /// x . way.
 template <class Number, int Order>
 Polynomial<Order, Number> along(const VectorOf<Number>& x, const VectorOf<Polynomial<Order, Number>>& way) {

@@ -45,6 +45,18 @@ struct VertexFaceSeparation {
     return f;
   }
 
+  template <class Number>
+  Number value_at_start(double t) const {
+    const Turner<Number> turn_a(a);
+    const Turner<Number> turn_b(b);
+    const VectorOf<Number> normal =
+        cross(difference_of<Number>(corners[0], corners[1]), difference_of<Number>(corners[0], corners[2]));
+    const VectorOf<Number> n = turn_b.at_start(normal);
+    return dot(turn_a.at_start(vector_of<Number>(vertex)), n) +
+           turn_a.scale_at_start() * (dot(n, way_at<Number>(b.path, a.path, t)) -
+                                      turn_b.scale_at_start() * dot(normal, vector_of<Number>(corners[0])));
+  }
+
   /// Error bound, with u = 2^-53 and lengths bounded by sums of magnitudes: L1 L2 for the edges of the normal, which is
   /// known to 5 u of that and is turned; G for the vector g from the origin of b to the vertex, with its error e; B for
   /// corner 0. N . g errs by L1 L2 (e + G (r + 5 u + 3 u)), r the error of turning; n . corner 0 by L1 L2 B (5 u + 3

@@ -1,5 +1,6 @@
 #include "collision/shapes/mesh.hpp"
 
+#include "collision/shapes/outer_points.hpp"
 #include "collision/shapes/solid_integrals.hpp"
 #include "collision/shapes/surface_tree.hpp"
 #include "collision/vectors.hpp"
@@ -111,6 +112,7 @@ struct Mesh::OnDemand {
   };
   Made<SurfaceTree> surface_tree;
   Made<SolidIntegrals> solid;
+  Made<OuterPoints> outer_points;
 };
 
 Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
@@ -155,6 +157,10 @@ const SurfaceTree& Mesh::surface_tree() const {
 
 const SolidIntegrals& Mesh::solid() const {
   return on_demand_->solid.get([this](auto& solid) { solid = solid_integrals(vertices_, triangles_); });
+}
+
+const OuterPoints& Mesh::outer_points() const {
+  return on_demand_->outer_points.get([this](auto& points) { points = collision::outer_points(tree_, vertices_); });
 }
 
 std::vector<Vector3d> Mesh::placed_vertices(const Eigen::Matrix3d& rotation, double scale) const {

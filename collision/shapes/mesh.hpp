@@ -17,6 +17,7 @@
 
 namespace kds::collision {
 
+class OuterPoints;
 class SurfaceTree;
 struct SolidIntegrals;
 
@@ -79,6 +80,9 @@ class Mesh {
   /// Volume, centre and second moments of what it bounds, by solid_integrals(), which says what it throws: made when
   /// they are first asked for. Threads may ask at once.
   const SolidIntegrals& solid() const;
+  /// Points whose convex hull holds it, in the unit of tree(): made when they are first asked for. Threads may ask at
+  /// once.
+  const OuterPoints& outer_points() const;
 
   /// Radius of the ball about the origin that holds all vertices, rounded up.
   double bounding_radius() const { return bounding_radius_; }

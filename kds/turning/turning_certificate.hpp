@@ -12,9 +12,11 @@
 #include "kds/turning/turning_reference.hpp"
 #include "kds/turning/turning_sum.hpp"
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <optional>
 
 namespace kds {
 
@@ -49,6 +51,16 @@ concept TurningCertificate = requires(const C& certificate, double epoch) {
 template <class C>
 concept GivesQuickValue = requires {
   static_cast<Ball<double> (C::*)(double) const>(&C::quick_value);
+};
+
+/// Hook: `template <class Number> Number value_at_start(double t) const`, f at t times any positive number, as if
+/// neither body had turned by then: a sum of products of doubles, in the arithmetic of Number. It is asked for where
+/// that is so, as after each contact, when the motions of both begin: there edges are often parallel, and faces lie in
+/// one plane.
+template <class C>
+concept GivesValueAtStart = requires(const C& certificate, double t) {
+  { certificate.template value_at_start<Exact>(t) } -> std::same_as<Exact>;
+  { certificate.template value_at_start<PlainNumber>(t) } -> std::same_as<PlainNumber>;
 };
 
 namespace detail {
@@ -170,6 +182,24 @@ bool plainly_vanishes(const C& certificate) {
   return true;
 }
 
+/// Whether neither body has turned by t.
+inline bool at_start(const std::array<Spin, 2>& spins, double t) {
+  return std::all_of(spins.begin(), spins.end(), [t](const Spin& spin) { return spin.still() || spin.start == t; });
+}
+
+/// The sign of f at t if neither body has turned by then, and the certificate tells it.
+template <class C>
+std::optional<int> sign_at_start(const C& certificate, double t) {
+  if constexpr (GivesValueAtStart<C>) {
+    if (at_start(certificate.spins(), t)) return certificate.template value_at_start<Exact>(t).sign();
+  }
+  return std::nullopt;
+}
+template <int Degree, int Harmonics>
+std::optional<int> sign_at_start(const TurningReference<Degree, Harmonics>& certificate, double t) {
+  return certificate.sign_at_start(t);
+}
+
 /// f at t in double-doubles, got the cheapest way in which its sign is certain, if there is one; zero without an error
 /// where it plainly is.
 template <class C>
@@ -184,7 +214,11 @@ Ball<DoubleDouble> extended_turning_value(const C& certificate, double t) {
     }
     if (certain_sign(value) != 0) return value;
   }
-  if (plainly_vanishes(certificate)) {
+  bool is_zero = false;
+  if constexpr (GivesValueAtStart<C>) {
+    is_zero = at_start(certificate.spins(), t) && certificate.template value_at_start<PlainNumber>(t).is_zero();
+  }
+  if (is_zero || plainly_vanishes(certificate)) {
     ++turning_sign_counters.exact;
     ++turning_sign_counters.zeros;
     return {};
@@ -209,12 +243,20 @@ enum class Instant : std::uint8_t { at, after };
 
 template <int Degree, int Harmonics>
 int next_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative);
+template <int Degree, int Harmonics>
+int turning_sign_after_zero(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative);
 
 /// The last rungs. The coefficients about t that tell that f is zero there also tell whether it is so at all times.
 template <int Degree, int Harmonics>
 int exact_turning_sign(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative,
                        Instant instant) {
   ++turning_sign_counters.exact;
+  if (derivative == 0) {
+    if (const auto sign = sign_at_start(certificate, t)) {
+      turning_sign_counters.zeros += *sign == 0;
+      return *sign != 0 || instant == Instant::at ? *sign : turning_sign_after_zero(certificate, t, 0);
+    }
+  }
   const std::array<Spin, 2> spins = certificate.spins();
   const auto f = derived_sum<Exact>(certificate, t, derivative);
   if (!vanishes_at_epoch(f, relation_at(spins[0], spins[1], t, f.harmonics))) return enclosed_sign(f, spins, t);
@@ -239,9 +281,13 @@ bool vanishes(const TurningReference<Degree, Harmonics>& certificate, int deriva
   return vanishes_throughout(derived_sum<Exact>(certificate, spins[0].start, derivative), spins[0], spins[1]);
 }
 
-/// sign_after() where the derivative itself is zero at t.
+/// sign_after() where the derivative itself is zero at t. Mostly the next one is not, and doubles or double-doubles
+/// tell its sign, for less than it takes to tell whether the first is zero at all times.
 template <int Degree, int Harmonics>
 int turning_sign_after_zero(const TurningReference<Degree, Harmonics>& certificate, double t, int derivative) {
+  const int next = derivative + 1;
+  if (const int s = certain_sign(turning_derivative<Ball<double>>(certificate, t, next))) return s;
+  if (const int s = certain_sign(turning_derivative<Ball<DoubleDouble>>(certificate, t, next))) return s;
   return vanishes(certificate, derivative) ? 0 : next_turning_sign(certificate, t, derivative);
 }
 

@@ -8,6 +8,7 @@
 #include "kds/turning/turning_sum.hpp"
 
 #include <array>
+#include <optional>
 #include <type_traits>
 
 namespace kds {
@@ -27,6 +28,8 @@ template <class C>
 Ball<DoubleDouble> extended_turning_value(const C& certificate, double t);
 template <class C>
 bool plainly_vanishes(const C& certificate);
+template <class C>
+std::optional<int> sign_at_start(const C& certificate, double t);
 
 }  // namespace detail
 
@@ -64,6 +67,7 @@ class TurningReference {
   Ball<double> quick_value(double t) const { return functions_->quick_value(certificate_, t); }
   Ball<DoubleDouble> extended_value(double t) const { return functions_->extended_value(certificate_, t); }
   bool plainly_vanishes() const { return functions_->plainly_vanishes(certificate_); }
+  std::optional<int> sign_at_start(double t) const { return functions_->sign_at_start(certificate_, t); }
 
  private:
   template <class Number, int Order>
@@ -77,6 +81,7 @@ class TurningReference {
     Ball<double> (*quick_value)(const void*, double t);
     Ball<DoubleDouble> (*extended_value)(const void*, double t);
     bool (*plainly_vanishes)(const void*);
+    std::optional<int> (*sign_at_start)(const void*, double t);
   };
 
   template <class C, class Number, int Order>
@@ -97,6 +102,11 @@ class TurningReference {
   }
 
   template <class C>
+  static std::optional<int> sign_at_start_of(const void* certificate, double t) {
+    return detail::sign_at_start(*static_cast<const C*>(certificate), t);
+  }
+
+  template <class C>
   static constexpr Functions functions_of = {sum_of<C, Ball<double>, 0>,
                                              sum_of<C, Ball<double>, Degree>,
                                              sum_of<C, Ball<DoubleDouble>, 0>,
@@ -104,7 +114,8 @@ class TurningReference {
                                              sum_of<C, Exact, Degree>,
                                              quick_value_of<C>,
                                              extended_value_of<C>,
-                                             plainly_vanishes_of<C>};
+                                             plainly_vanishes_of<C>,
+                                             sign_at_start_of<C>};
 
   const void* certificate_;
   const Functions* functions_;

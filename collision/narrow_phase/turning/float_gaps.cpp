@@ -1,5 +1,6 @@
 // Gaps of nodes and triangles, in registers of eight floats where the build and the processor have them, else of four.
 #include "collision/narrow_phase/turning/float_node_gaps.hpp"
+#include "collision/narrow_phase/turning/float_separation.hpp"
 #include "collision/narrow_phase/turning/float_triangle_gaps.hpp"
 
 namespace kds::collision {
@@ -32,13 +33,19 @@ void find_triangle_parts_by_four(const FloatView& view, const TrianglesTogether&
   }
 }
 
+float find_separated_part_by_four(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
+  return PlaneBetween<FourFloats>(view, a, b).part();
+}
+
 }  // namespace
 
-const FloatGaps gaps_by_four{find_node_waits_by_four, find_nodes_apart_by_four, find_triangle_parts_by_four};
+const FloatGaps gaps_by_four{find_node_waits_by_four, find_nodes_apart_by_four, find_triangle_parts_by_four,
+                             find_separated_part_by_four};
 
 #ifdef KDS_BUILT_FOR_AVX2_TOO
 const FloatGaps* gaps_by_eight() {
-  static constexpr FloatGaps gaps{find_node_waits_by_eight, find_nodes_apart_by_eight, find_triangle_parts_by_eight};
+  static constexpr FloatGaps gaps{find_node_waits_by_eight, find_nodes_apart_by_eight, find_triangle_parts_by_eight,
+                                  find_separated_part_by_eight};
   return __builtin_cpu_supports("avx2") ? &gaps : nullptr;
 }
 #else
@@ -64,6 +71,9 @@ unsigned find_nodes_apart_by(float margin, const FloatView& view, const NodesTog
 }
 void find_triangle_parts(const FloatView& view, const TrianglesTogether& triangles, float* parts) {
   gaps().triangle_parts(view, triangles, parts);
+}
+float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
+  return gaps().separated_part(view, a, b);
 }
 
 }  // namespace kds::collision

@@ -5,6 +5,7 @@
 #ifdef __AVX2__
 
 #include "collision/narrow_phase/turning/float_node_gaps.hpp"
+#include "collision/narrow_phase/turning/float_separation.hpp"
 #include "collision/narrow_phase/turning/float_triangle_gaps.hpp"
 
 namespace kds::collision::detail {
@@ -20,6 +21,10 @@ unsigned find_nodes_apart_by_eight(float margin, const FloatView& view, const No
 void find_triangle_parts_by_eight(const FloatView& view, const TrianglesTogether& triangles, float* parts) {
   const EightFloats found = TriangleGaps<EightFloats>(view, triangles, 0).parts();
   __builtin_memcpy(parts, &found, sizeof found);
+}
+
+float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
+  return PlaneBetween<EightFloats>(view, a, b).part();
 }
 
 }  // namespace kds::collision::detail

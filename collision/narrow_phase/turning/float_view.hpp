@@ -43,20 +43,30 @@ struct TrianglesTogether {
   int count;
 };
 
+/// Points of a body whose convex hull holds it (OuterPoints), in the axes of the body, in units of nodes.
+inline constexpr int most_outer_points = 64;
+struct PointsTogether {
+  const float *x, *y, *z;
+  int count;  ///< a multiple of eight
+};
+
 /// Along the line between their centres, or along an axis of one of them that turns with it.
 void find_node_waits(const FloatView& view, const NodesTogether& nodes, NodeWaits& waits);
 /// Whether they are surely farther apart than a margin at the time of the view: bit i of pair i.
 unsigned find_nodes_apart_by(float margin, const FloatView& view, const NodesTogether& nodes);
 /// For how much of the time ahead triangles are surely apart.
 void find_triangle_parts(const FloatView& view, const TrianglesTogether& triangles, float* parts);
+/// For how much of the time ahead a plane is found that separates all of the two bodies.
+float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b);
 
 namespace detail {
 
-/// The three functions above.
+/// The four functions above.
 struct FloatGaps {
   void (*node_waits)(const FloatView&, const NodesTogether&, NodeWaits&);
   unsigned (*nodes_apart_by)(float margin, const FloatView&, const NodesTogether&);
   void (*triangle_parts)(const FloatView&, const TrianglesTogether&, float* parts);
+  float (*separated_part)(const FloatView&, const PointsTogether& a, const PointsTogether& b);
 };
 /// In registers of four floats.
 extern const FloatGaps gaps_by_four;
@@ -67,6 +77,7 @@ const FloatGaps* gaps_by_eight();
 void find_node_waits_by_eight(const FloatView& view, const NodesTogether& nodes, NodeWaits& waits);
 unsigned find_nodes_apart_by_eight(float margin, const FloatView& view, const NodesTogether& nodes);
 void find_triangle_parts_by_eight(const FloatView& view, const TrianglesTogether& triangles, float* parts);
+float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b);
 
 }  // namespace detail
 }  // namespace kds::collision

@@ -117,6 +117,9 @@ class TurningBoxes {
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;
 
+  /// Whether it crosses two edges that are parallel but for 2^-10.
+  static bool is_thin(const PairFrame<Degree>& frame, int way) { return way >= 12 && !(sine(frame, way) > 0x1p-10); }
+
   /// Whether all conditions of a way are zero at all times: that is whether the edges it crosses, u and v, are
   /// parallel. Three tell. If (u x v) . (a - b) vanishes for one edge of b and three edges of a, u x v is at right
   /// angles to two other edges of a, and it is to u.
@@ -209,6 +212,10 @@ class TurningBoxes {
 
   template <class Visit>
   void every_jet(const PairFrame<Degree>& frame, int way, double stretch, const Visit& visit) const;
+  /// Of the angle between the two edges that a way crosses.
+  static double sine(const PairFrame<Degree>& frame, int way) {
+    return norm(cross(frame.axis_a((way - 12) / 6), frame.axis_b((way - 12) / 2 % 3)));
+  }
   double revolving_apart_for(const PairFrame<Degree>& frame, int way) const;
   int widest(const PairFrame<Degree>& frame, const std::array<double, ways>& gap) const;
   double open_for(const PairFrame<Degree>& frame, int way, double stretch) const;
@@ -262,11 +269,7 @@ int TurningBoxes<Degree>::widest(const PairFrame<Degree>& frame, const std::arra
   double widest = -never;
   for (int way = 0; way < ways; ++way) {
     double width = gap[static_cast<std::size_t>(way)];
-    if (way >= 12 && width > 0) {
-      const int pair = (way - 12) / 2;
-      const double sine = norm(cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3)));
-      width = sine > 0x1p-10 ? width / sine : -never;
-    }
+    if (way >= 12 && width > 0) width = is_thin(frame, way) ? -never : width / sine(frame, way);
     if (width > widest) widest = width, best = way;
   }
   return best;
@@ -281,11 +284,7 @@ double TurningBoxes<Degree>::depth(double t) const {
   gaps(frame, gap);
   double least = never;
   for (int way = 0; way < ways; ++way) {
-    double sine = 1;
-    if (way >= 12) {
-      const int pair = (way - 12) / 2;
-      sine = norm(cross(frame.axis_a(pair / 3), frame.axis_b(pair % 3)));
-    }
+    const double sine = way < 12 ? 1 : this->sine(frame, way);
     if (sine > 0x1p-20) least = std::min(least, -gap[static_cast<std::size_t>(way)] / sine);
   }
   return std::max(0.0, least);

@@ -108,7 +108,9 @@ class TurningMeshSearch {
       std::vector<Item> items;
       items.reserve(32), visits_.reserve(32), leaves_.reserve(16);
       queue_ = decltype(queue_)(std::greater<>(), std::move(items));
-      search_.nodes_.first([&](NodePair nodes) { visits_.push_back({nodes, t0}); });
+      const double from = separated_until(t0);
+      if (from > horizon_) return;
+      search_.nodes_.first([&](NodePair nodes) { visits_.push_back({nodes, from}); });
       visit_all();
     }
     double next();
@@ -122,6 +124,7 @@ class TurningMeshSearch {
       const double wait = part >= 1 ? view_.ahead : static_cast<double>(part) * view_.ahead * (1 - 0x1p-30);
       return wait > horizon_ - view_.time ? never : next_down(view_.time + wait);
     }
+    double separated_until(double t);
     void look(double t) {
       if (t != view_.time) view_ = search_.view(t, horizon_);
     }

@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/turning/turning_triangle_and_capsule.hpp"
 #include "collision/narrow_phase/turning/turning_triangles.hpp"
 #include "collision/shapes/mesh.hpp"
+#include "collision/shapes/outer_points.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/shapes/solid_integrals.hpp"
 
@@ -46,6 +47,7 @@ class MeshOfPair {
         norm(Eigen::Vector3d(centre[0], centre[1], centre[2])) + static_cast<double>(nodes_[0].radius);
     return {unit_, 0, unit_ * radius * (1 + 0x1p-40)};
   }
+  const OuterPoints& outer_points() const { return shape_.mesh->outer_points(); }
   bool solid() const { return solid_; }
   /// Whether it bounds a volume: its triangles turn alike, and along each edge as many to and fro. Takes O(n log n) of
   /// a mesh that has not been asked yet.
@@ -121,10 +123,17 @@ class SolidSide {
 /// A box.
 class BoxOfPair : public SolidSide {
  public:
-  explicit BoxOfPair(const Box& box) : half_(box.half_extents), node_(box_node(half_)) {}
+  explicit BoxOfPair(const Box& box) : half_(box.half_extents), node_(box_node(half_)) {
+    const Eigen::Vector3d half(node_.half_extents[0], node_.half_extents[1], node_.half_extents[2]);
+    for (int signs = 0; signs < 8; ++signs) {
+      outer_points_.add(
+          {signs & 1 ? half[0] : -half[0], signs & 2 ? half[1] : -half[1], signs & 4 ? half[2] : -half[2]});
+    }
+  }
 
   const ObbNode& node(std::uint32_t) const { return node_; }
   NodeUnits units() const { return box_units(half_); }
+  const OuterPoints& outer_points() const { return outer_points_; }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBox<Degree>;
@@ -137,15 +146,19 @@ class BoxOfPair : public SolidSide {
  private:
   Eigen::Vector3d half_;
   ObbNode node_;
+  OuterPoints outer_points_;
 };
 
 /// A ball.
 class BallOfPair : public SolidSide {
  public:
-  explicit BallOfPair(const Sphere& ball) : radius_(ball.radius), node_(box_node(Eigen::Vector3d::Zero())) {}
+  explicit BallOfPair(const Sphere& ball) : radius_(ball.radius), node_(box_node(Eigen::Vector3d::Zero())) {
+    outer_points_.add(Eigen::Vector3d::Zero());
+  }
 
   const ObbNode& node(std::uint32_t) const { return node_; }
   NodeUnits units() const { return {0, radius_, radius_}; }
+  const OuterPoints& outer_points() const { return outer_points_; }
 
   template <int Degree>
   using PairWith = TurningTriangleAndBall<Degree>;
@@ -158,6 +171,7 @@ class BallOfPair : public SolidSide {
  private:
   double radius_;
   ObbNode node_;
+  OuterPoints outer_points_;
 };
 
 /// A capsule.
@@ -167,13 +181,16 @@ class CapsuleOfPair : public SolidSide {
   explicit CapsuleOfPair(const Shape& capsule)
       : capsule_(std::get<Capsule>(capsule)),
         core_(capsule),
-        node_(box_node(Eigen::Vector3d(0, 0, capsule_.half_length))) {}
+        node_(box_node(Eigen::Vector3d(0, 0, capsule_.half_length))) {
+    for (const double end : {-1, 1}) outer_points_.add(Eigen::Vector3d(0, 0, end));
+  }
 
   const ObbNode& node(std::uint32_t) const { return node_; }
   NodeUnits units() const {
     const double radius = (capsule_.half_length + capsule_.radius) * (1 + 0x1p-50);
     return {capsule_.half_length, capsule_.radius, radius};
   }
+  const OuterPoints& outer_points() const { return outer_points_; }
   const Capsule& capsule() const { return capsule_; }
 
   template <int Degree>
@@ -188,6 +205,7 @@ class CapsuleOfPair : public SolidSide {
   Capsule capsule_;
   ConvexCore core_;
   ObbNode node_;
+  OuterPoints outer_points_;
 };
 
 }  // namespace kds::collision

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/turning/float_view.hpp"
 #include "collision/narrow_phase/turning/turning_view.hpp"
 #include "collision/shapes/obb_tree.hpp"
+#include "collision/shapes/outer_points.hpp"
 
 #include <Eigen/Core>
 
@@ -115,6 +116,17 @@ template <int Degree>
 unsigned nodes_apart_by(double margin, const NodesView<Degree>& view, const NodesTogether& nodes) {
   if (!view.certain) return 0;
   return find_nodes_apart_by(static_cast<float>(margin / view.size * (1 + 0x1p-20)), view.floats, nodes);
+}
+
+/// For how much of the time ahead a plane surely separates the two bodies, whose outer points are in their units.
+template <int Degree>
+float separated_part(const NodesView<Degree>& view, const OuterPoints& a, const OuterPoints& b) {
+  static_assert(OuterPoints::most == most_outer_points);
+  if (!view.certain || !(view.ahead > 0)) return 0;
+  const auto places = [](const OuterPoints& points) {
+    return PointsTogether{points.x(), points.y(), points.z(), static_cast<int>(points.size())};
+  };
+  return find_separated_part(view.floats, places(a), places(b));
 }
 
 /// A corner of a triangle in the units of a view, in four floats.

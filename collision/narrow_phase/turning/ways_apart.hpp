@@ -46,10 +46,10 @@ struct ExactSigns {
 /// so that a way that is narrower than -error has a condition that is broken then; `fastest(frame, stretch)`, a bound
 /// on how fast widths change; `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
 /// `unsure_while_open`, the same of a way whose conditions hold just after the time of the frame; perhaps
-/// `many_conditions`, if they are never all to be looked at; `apart_until(t, horizon)`, a proven time;
-/// `time_of_turning()`; perhaps `open_wait(frame, way, stretch)`, for how long a way that is open just after the time
-/// of the frame stays so for certain, `waits`, the same of each of its conditions by its number, and `stretch(frame,
-/// longest)`, how far these can be told.
+/// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are
+/// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
+/// way, stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the
+/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -182,18 +182,44 @@ class WaysApart {
     return error;
   }
 
-  /// One that is open just after t, or `none`; the widest first.
+  /// Calls visit(way) for those that are no narrower than least(), the widest first, until it returns true. Thin ways
+  /// come last: signs of what is parallel but for roundings cost most, and where another way is open they are not
+  /// asked.
+  template <class Least, class Visit>
+  void every_way(const Frame& frame, ByWay<double>& gap, const Least& least, const Visit& visit) const {
+    std::vector<std::pair<int, double>> thin;
+    for (;;) {
+      const auto widest = std::max_element(gap.begin(), gap.end());
+      const double width = *widest;
+      if (width == -never || width < least()) break;
+      const int way = static_cast<int>(widest - gap.begin());
+      *widest = -never;
+      if constexpr (requires { pair_.is_thin(frame, way); }) {
+        if (pair_.is_thin(frame, way)) {
+          thin.emplace_back(way, width);
+          continue;
+        }
+      }
+      if (visit(way)) return;
+    }
+    for (const auto& [way, width] : thin) {
+      if (!(width < least()) && visit(way)) return;
+    }
+  }
+
+  /// One that is open just after t, or `none`.
   int open_way(double t) const {
     ByWay<double> gap = by_way<double>();
     const Frame& frame = this->frame(t);
     const double error = gaps(frame, gap);
-    for (;;) {
-      const auto widest = std::max_element(gap.begin(), gap.end());
-      if (*widest < -error || *widest == -never) return none;
-      const int way = static_cast<int>(widest - gap.begin());
-      if (open(way, frame)) return way;
-      *widest = -never;
-    }
+    int found = none;
+    every_way(
+        frame, gap, [error] { return -error; },
+        [&](int way) {
+          if (open(way, frame)) found = way;
+          return found != none;
+        });
+    return found;
   }
 
   /// The first double in [t, until] just after which a condition of a way is broken, or `never`. Mostly it is soon, and
@@ -244,14 +270,12 @@ class WaysApart {
     const double error = gaps(frame, gap);
     const double fastest = pair_.fastest(frame, (until - t) * (1 + 0x1p-40));
     double first = never;
-    for (int round = 0; round < pair_.ways; ++round) {  // the widest first, which is mostly the one
-      const auto widest = std::max_element(gap.begin(), gap.end());
-      const double stretch = (std::min(first, until) - t) * (1 + 0x1p-40);
-      if (*widest == -never || *widest + fastest * stretch < -error) break;  // too narrow to be open by then
-      const int way = static_cast<int>(widest - gap.begin());
-      *widest = -never;
+    // Narrower ones are not open by then.
+    const auto least = [&] { return -error - fastest * ((std::min(first, until) - t) * (1 + 0x1p-40)); };
+    every_way(frame, gap, least, [&](int way) {
       first = std::min(first, opens(way, t, std::min(first, until)));
-    }
+      return false;
+    });
     return first;
   }
 
