@@ -318,8 +318,10 @@ double TurningContact<Degree>::first_separation(const Body& a, const Body& b, do
     return without_turning<Degree>(
         a, b, [&](const auto& x, const auto& y) { return collision::first_separation(x, y, t0, horizon); });
   }
-  return with_ways<Degree>(
-      a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).first_parting(t0, horizon); });
+  return with_ways<Degree>(a, b, [&](const auto& pair) {
+    RememberedSigns signs;
+    return WaysApart<std::decay_t<decltype(pair)>, RememberedSigns&>(pair, signs).first_parting(t0, horizon);
+  });
 }
 
 #define KDS_INSTANTIATE(degree)                                                \

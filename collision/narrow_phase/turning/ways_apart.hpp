@@ -101,10 +101,20 @@ class WaysApart {
   /// The first double in [t, horizon] just after which they do not, or `never`. `penetrates`: they are known to do so
   /// just after t.
   double first_parting(double t, double horizon, bool penetrates = false) const {
+    constexpr double worth = 0x1p-6;  // of the time of turning: shorter waits are left to exact signs
+    constexpr double part = 0x1p-4;   // of it that these look at once
     while (t <= horizon) {
       if (!penetrates && !penetrate(t)) return t;
-      penetrates = false;
-      const double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
+      const double turning = pair_.time_of_turning();
+      const double turned = std::min(horizon, std::max(next_up(t), t + turning));
+      const double deep = turned - t > part * turning ? deep_until(t, turned) : t;
+      penetrates = deep - t > worth * (turned - t);
+      if (penetrates) {
+        if (deep >= horizon) return never;
+        t = deep;
+        continue;
+      }
+      const double until = std::min(turned, std::max(next_up(t), t + part * turning));
       const double opens = first_opening(t, until);
       if (opens != never) return opens;
       if (until == horizon) return never;
@@ -261,6 +271,18 @@ class WaysApart {
     } else {
       return pair_.unsure(frame, way, stretch);
     }
+  }
+
+  /// A time up to `until` just after which all ways are surely closed, as just after all times from t on: they are so
+  /// narrow at t, and do not widen faster. t if doubles do not tell.
+  double deep_until(double t, double until) const {
+    ByWay<double> gap = by_way<double>();
+    const Frame& frame = this->frame(t);
+    const double error = gaps(frame, gap), widest = *std::max_element(gap.begin(), gap.end());
+    if (!(widest < -error)) return t;
+    const double stretch = (until - t) * (1 + 0x1p-40);
+    const double wait = (-error - widest) / pair_.fastest(frame, stretch) * (1 - 0x1p-30);
+    return wait > stretch ? until : std::max(t, next_down(t + wait));
   }
 
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
