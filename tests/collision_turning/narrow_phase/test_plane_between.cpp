@@ -115,6 +115,37 @@ TEST_CASE("boxes and balls are apart for as long as a plane is proven to separat
   CHECK(missed * 50 < apart);  // a plane is found
 }
 
+TEST_CASE("a plane does not outlast bodies that approach by their accelerations alone", "[turning]") {
+  const std::uint64_t seed = 569;
+  CAPTURE(seed);
+  Random random(seed);
+  int proven = 0, ended = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double gap = std::pow(10.0, random.between(-4, -1)), acceleration = random.between(0.5, 5);
+    const bool with_ball = random.one_in(2), first_falls = random.one_in(2);
+    const Box plate{Vector3d(1, 1, 0.5)}, cube{Vector3d(0.5, 0.5, 0.5)};
+    const Sphere ball{0.5};
+    // One spins about the axis along which they approach, which brings no part of it nearer.
+    const double rate = random.between(0, 2);
+    Motion a = motion_of<2>(Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), 0);
+    Motion b = motion_of<2>(Vector3d(0, 0, 1 + gap), Vector3d::Zero(), Vector3d(0, 0, rate), 0);
+    (first_falls ? a : b).path.coefficients[2][2] = (first_falls ? 0.5 : -0.5) * acceleration;
+    const BoxOfPair side_a(plate), side_cube(cube);
+    const BallOfPair side_ball(ball);
+    const NodesView<2> view(a, b, {a, b}, side_a.units(), with_ball ? side_ball.units() : side_cube.units(), 0, 1);
+    const float part =
+        checked_part(view, side_a.outer_points(), with_ball ? side_ball.outer_points() : side_cube.outer_points());
+    if (!(part > 0)) continue;
+    ++proven;
+    const double meet = std::sqrt(2 * gap / acceleration), until = end_of(view, 0, 1, part);
+    CAPTURE(round, part, meet, until);
+    CHECK(until < meet);
+    ended += part < 1;
+  }
+  CHECK(proven > 200);
+  CHECK(ended > 100);
+}
+
 TEST_CASE("meshes do not penetrate for as long as a plane is proven to separate them", "[turning]") {
   using Oracle = tests::TurningMeshOracle;
   const std::uint64_t seed = 568;
