@@ -4,6 +4,8 @@
 #include "collision/narrow_phase/turning/float_vectors.hpp"
 #include "collision/narrow_phase/turning/float_view.hpp"
 
+#include <cstddef>
+
 namespace kds::collision::detail {
 
 /// A plane between the points of two bodies whose convex hulls hold them. Its normal does not turn; it moves and
@@ -98,7 +100,7 @@ class PlaneBetween {
   [[gnu::always_inline]] static Farthest farthest(const PointsTogether& points, const Vector& along) {
     constexpr int lanes = lanes_of_floats<Floats>;
     const Vectors n = all<Floats>(&along.x);
-    Floats heights[most_outer_points / lanes], best = all<Floats>(-0x1p100F);
+    Floats heights[std::size_t{most_outer_points} / std::size_t{lanes}], best = all<Floats>(-0x1p100F);
     for (int first = 0; first < points.count; first += lanes) {
       heights[first / lanes] = dot(n, some(points, first));
       best = greater(best, heights[first / lanes]);

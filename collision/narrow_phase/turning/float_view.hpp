@@ -43,8 +43,8 @@ struct TrianglesTogether {
   int count;
 };
 
-/// Points of a body whose convex hull holds it (OuterPoints), in the axes of the body, in units of nodes.
 inline constexpr int most_outer_points = 64;
+/// Points of a body whose convex hull holds it (OuterPoints), in the axes of the body, in units of nodes.
 struct PointsTogether {
   const float *x, *y, *z;
   int count;  ///< a multiple of eight
