@@ -36,13 +36,7 @@ using EdgeEdge = certificates::EdgeEdgeSeparation<2>;
 using VertexFace = certificates::VertexFaceSeparation<2>;
 
 Motion random_motion(Random& random, const Vector3d& place) {
-  const double rate = std::pow(10.0, random.between(-2, 1.5));
-  auto motion = motion_of<2>(place, random_vector(random, 2), random_vector(random, rate), -random.between(0, 2));
-  motion.path.coefficients[2] = random_vector(random, 1);
-  motion.orientation =
-      Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-  if (random.one_in(5)) motion.angular_velocity.setZero();
-  return motion;
+  return kds::tests::random_turning_motion(random, place, 2);
 }
 
 std::array<Vector3d, 3> random_triangle(Random& random) {

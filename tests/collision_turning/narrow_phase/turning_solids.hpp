@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/support/random_numbers.hpp"
 
+#include <cmath>
 #include <variant>
 
 namespace kds::tests {
@@ -31,6 +32,18 @@ certificates::RigidMotion<Degree> motion_of(const Eigen::Vector3d& position, con
 inline Eigen::Vector3d random_vector(Random& random, double size) {
   const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
   return {x, y, z};
+}
+
+/// Of a body that is at `place` where its motion begins, in the last two seconds before 0, and turns slowly or fast, or
+/// not at all. `speed`: bounds each coordinate of its velocity.
+inline certificates::RigidMotion<2> random_turning_motion(Random& random, const Eigen::Vector3d& place, double speed) {
+  const double rate = std::pow(10.0, random.between(-2, 1.5));
+  auto motion = motion_of<2>(place, random_vector(random, speed), random_vector(random, rate), -random.between(0, 2));
+  motion.path.coefficients[2] = random_vector(random, 1);
+  motion.orientation =
+      Eigen::Quaterniond(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+  if (random.one_in(5)) motion.angular_velocity.setZero();
+  return motion;
 }
 
 }  // namespace kds::tests

@@ -214,6 +214,23 @@ TEMPLATE_TEST_CASE("events of one time come by rank, then slot", "[event_queue]"
   REQUIRE(queue.top() == QueuedEvent{2.0, 6});
 }
 
+namespace {
+
+/// Gives a slot a time at random, or none, in a queue and its model; after each second step the first event of both is
+/// compared and taken.
+template <class Queue, class Reference>
+void set_and_pop(Queue& queue, Reference& model, std::mt19937_64& random, Slot slot, int step) {
+  const double time = random() % 5 == 0 ? infinity : static_cast<double>(step / 500 + static_cast<int>(random() % 3));
+  queue.set(slot, time);
+  model.set(slot, time);
+  if (step % 2 != 0 || model.empty()) return;
+  require_equal(queue, model);
+  queue.pop();
+  model.pop();
+}
+
+}  // namespace
+
 TEMPLATE_TEST_CASE("ranks that change between settings leave the queue in order", "[event_queue]",
                    kds::PairingQueue<TableRank>, kds::DaryQueue<TableRank>, kds::CalendarQueue<TableRank>) {
   const std::uint64_t seed = 42;
@@ -229,14 +246,7 @@ TEMPLATE_TEST_CASE("ranks that change between settings leave the queue in order"
   for (int step = 0; step < 20000; ++step) {
     (*rank.table)[random() % slots] = random() % 5;
     const auto slot = static_cast<Slot>(random() % slots);
-    const double time = random() % 5 == 0 ? infinity : static_cast<double>(step / 500 + static_cast<int>(random() % 3));
-    queue.set(slot, time);
-    model.set(slot, time);
-    if (step % 2 == 0 && !model.empty()) {
-      require_equal(queue, model);
-      queue.pop();
-      model.pop();
-    }
+    set_and_pop(queue, model, random, slot, step);
   }
   drain(queue, model);
 }
@@ -268,15 +278,7 @@ TEMPLATE_TEST_CASE("ranks that last, and change only where there is no event", "
     for (int step = 0; step < 10000; ++step) {
       const auto slot = static_cast<Slot>(random() % slots);
       if (!queue.contains(slot)) (*rank.table)[slot] = random() % 5;
-      const double time =
-          random() % 5 == 0 ? infinity : static_cast<double>(step / 500 + static_cast<int>(random() % 3));
-      queue.set(slot, time);
-      model.set(slot, time);
-      if (step % 2 == 0 && !model.empty()) {
-        require_equal(queue, model);
-        queue.pop();
-        model.pop();
-      }
+      set_and_pop(queue, model, random, slot, step);
     }
     // The ranks may be gone when all is dropped.
     REQUIRE(queue.size() > 1);
