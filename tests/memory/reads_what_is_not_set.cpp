@@ -1,7 +1,7 @@
-// A program that decides by a value that nobody has set: valgrind has to end it with an error.
+// A program that ends with a value that nobody has set: valgrind has to tell of it.
 #include <memory>
 
 int main() {
   const std::unique_ptr<volatile int[]> values(new volatile int[4]);
-  return values[2] == 1234567 ? 1 : 0;
+  return values[2];
 }
