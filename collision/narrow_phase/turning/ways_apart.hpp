@@ -49,7 +49,8 @@ struct ExactSigns {
 /// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are
 /// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
 /// way, stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the
-/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
+/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told; perhaps
+/// `closed_wait(frame, way, stretch)`, for how long one of its conditions is broken for certain.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -294,10 +295,44 @@ class WaysApart {
     double first = never;
     // Narrower ones are not open by then.
     const auto least = [&] { return -error - fastest * ((std::min(first, until) - t) * (1 + 0x1p-40)); };
+    if constexpr (requires { pair_.closed_wait(frame, 0, 0.0); }) {
+      return first_opening_of(closed_ways(frame, gap, least, until), t, until);
+    }
     every_way(frame, gap, least, [&](int way) {
       first = std::min(first, opens(way, t, std::min(first, until)));
       return false;
     });
+    return first;
+  }
+
+  /// A way, and when it is closed for certain: just after all times from that of the frame to before this one.
+  struct ClosedWay {
+    int way;
+    double until;
+  };
+  /// Those that may be open by `until`: the first to open first, but for thin ones.
+  template <class Least>
+  std::vector<ClosedWay> closed_ways(const Frame& frame, ByWay<double>& gap, const Least& least, double until) const {
+    const double t = frame.time, stretch = pair_.stretch(frame, (until - t) * (1 + 0x1p-40));
+    std::vector<ClosedWay> ways, thin;
+    ways.reserve(gap.size());
+    every_way(frame, gap, least, [&](int way) {
+      const double wait = pair_.closed_wait(frame, way, stretch);
+      const double closed = wait > 0 ? std::max(t, next_down(t + wait)) : t;
+      if (closed < until) (pair_.is_thin(frame, way) ? thin : ways).push_back({way, closed});
+      return false;
+    });
+    std::stable_sort(ways.begin(), ways.end(), [](const auto& x, const auto& y) { return x.until < y.until; });
+    ways.insert(ways.end(), thin.begin(), thin.end());
+    return ways;
+  }
+
+  double first_opening_of(const std::vector<ClosedWay>& ways, double t, double until) const {
+    double first = never;
+    for (const ClosedWay& each : ways) {
+      if (!(each.until < std::min(first, until))) continue;
+      first = std::min(first, opens(each.way, std::max(t, each.until), std::min(first, until)));
+    }
     return first;
   }
 
