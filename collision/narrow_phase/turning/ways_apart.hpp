@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -295,45 +296,47 @@ class WaysApart {
     double first = never;
     // Narrower ones are not open by then.
     const auto least = [&] { return -error - fastest * ((std::min(first, until) - t) * (1 + 0x1p-40)); };
-    if constexpr (requires { pair_.closed_wait(frame, 0, 0.0); }) {
-      return first_opening_of(closed_ways(frame, gap, least, until), t, until);
+    if constexpr (!requires { pair_.closed_wait(frame, 0, 0.0); }) {
+      every_way(frame, gap, least, [&](int way) {
+        first = std::min(first, opens(way, t, std::min(first, until)));
+        return false;
+      });
+    } else {
+      // An exact look at the widest one mostly leaves few others that may open before. Of these the first come first.
+      struct Other {
+        bool thin;
+        double closed_until;
+        int way;
+      };
+      std::vector<Other> others;
+      bool any = false;
+      every_way(frame, gap, least, [&](int way) {
+        const double end = std::min(first, until);
+        if (!std::exchange(any, true)) {
+          first = opens(way, t, end);
+        } else if (const double closed = closed_until(frame, way, end); closed < end) {
+          others.push_back({pair_.is_thin(frame, way), closed, way});
+        }
+        return false;
+      });
+      std::sort(others.begin(), others.end(), [](const Other& x, const Other& y) {
+        return std::tie(x.thin, x.closed_until, x.way) < std::tie(y.thin, y.closed_until, y.way);
+      });
+      for (const Other& other : others) {
+        const double end = std::min(first, until);
+        if (other.closed_until < end) first = std::min(first, opens(other.way, other.closed_until, end));
+      }
     }
-    every_way(frame, gap, least, [&](int way) {
-      first = std::min(first, opens(way, t, std::min(first, until)));
-      return false;
-    });
     return first;
   }
 
-  /// A way, and when it is closed for certain: just after all times from that of the frame to before this one.
-  struct ClosedWay {
-    int way;
-    double until;
-  };
-  /// Those that may be open by `until`: the first to open first, but for thin ones.
-  template <class Least>
-  std::vector<ClosedWay> closed_ways(const Frame& frame, ByWay<double>& gap, const Least& least, double until) const {
-    const double t = frame.time, stretch = pair_.stretch(frame, (until - t) * (1 + 0x1p-40));
-    std::vector<ClosedWay> ways, thin;
-    ways.reserve(gap.size());
-    every_way(frame, gap, least, [&](int way) {
-      const double wait = pair_.closed_wait(frame, way, stretch);
-      const double closed = wait > 0 ? std::max(t, next_down(t + wait)) : t;
-      if (closed < until) (pair_.is_thin(frame, way) ? thin : ways).push_back({way, closed});
-      return false;
-    });
-    std::stable_sort(ways.begin(), ways.end(), [](const auto& x, const auto& y) { return x.until < y.until; });
-    ways.insert(ways.end(), thin.begin(), thin.end());
-    return ways;
-  }
-
-  double first_opening_of(const std::vector<ClosedWay>& ways, double t, double until) const {
-    double first = never;
-    for (const ClosedWay& each : ways) {
-      if (!(each.until < std::min(first, until))) continue;
-      first = std::min(first, opens(each.way, std::max(t, each.until), std::min(first, until)));
-    }
-    return first;
+  /// A time up to `end`, not before that of the frame, until which a way is closed for certain, just after all times
+  /// before it.
+  double closed_until(const Frame& frame, int way, double end) const {
+    const double all = (end - frame.time) * (1 + 0x1p-40);
+    const double wait = pair_.closed_wait(frame, way, pair_.stretch(frame, all));
+    if (wait >= all) return end;
+    return wait > 0 ? std::max(frame.time, next_down(frame.time + wait)) : frame.time;
   }
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.
