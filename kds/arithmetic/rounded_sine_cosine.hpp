@@ -16,7 +16,7 @@ namespace kds {
 /// Nearly always a table of sines and cosines and short series in doubles tell to which double the result rounds; where
 /// they do not, one of some hundred times, double-doubles do. Made of + - * alone.
 ///
-/// Cost: an eighth of that in double-doubles.
+/// Cost: a fifth of that in double-doubles.
 SineCosine<double> rounded_sine_cosine(const Ball<DoubleDouble>& angle);
 
 // ---------------------------------------------------------------------------------------------------------------
