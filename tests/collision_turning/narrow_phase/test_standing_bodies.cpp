@@ -2,6 +2,7 @@
 // orientation: they meet at the same doubles as if they were tested as bodies that may turn.
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "kds/arithmetic/lattice.hpp"
 
@@ -46,7 +47,7 @@ struct Numbers {
 /// A shape, and the same turned back by a quarter turn about z.
 std::pair<Shape, Shape> random_shapes(const Numbers& numbers) {
   const auto size = [&] { return numbers.between(0.25, 1.25); };
-  switch (numbers.random.below(4)) {
+  switch (numbers.random.below(5)) {
     case 0: {
       const Sphere ball{size()};
       return {ball, ball};
@@ -58,6 +59,15 @@ std::pair<Shape, Shape> random_shapes(const Numbers& numbers) {
     case 2: {
       const Capsule capsule{size(), size()};
       return {capsule, capsule};
+    }
+    case 3: {
+      std::vector<CompoundPart> parts, back;
+      for (int i = 0; i < 3; ++i) {
+        const Vector3d half(size() / 2, size() / 2, size() / 2), place = numbers.vector(0.75);
+        parts.push_back({Box{half}, place});
+        back.push_back({Box{Vector3d(half[1], half[0], half[2])}, Vector3d(place[1], -place[0], place[2])});
+      }
+      return {compound(parts), compound(back)};
     }
     default: {
       const double x = size(), y = size(), z = size();
