@@ -51,7 +51,8 @@ struct ExactSigns {
 /// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
 /// way, stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the
 /// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told; perhaps
-/// `closed_wait(frame, way, stretch)`, for how long one of its conditions is broken for certain.
+/// `closed_wait(frame, way, stretch)`, with these and `is_thin`, for how long one of its conditions is broken for
+/// certain.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
