@@ -7,15 +7,16 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 namespace kds {
 
 /// The doubles nearest to what sine_cosine<Ball<DoubleDouble>>(angle) says, which are its `middle.high`, bit for bit.
 ///
-/// Nearly always the first terms of the series in double-doubles and the others in doubles tell to which double the
-/// result rounds; where they do not, one of some thousand times, double-doubles do. Made of + - * alone.
+/// Nearly always a table of sines and cosines and short series in doubles tell to which double the result rounds; where
+/// they do not, one of some hundred times, double-doubles do. Made of + - * alone.
 ///
-/// Cost: a fourth of that in double-doubles.
+/// Cost: a fifth of that in double-doubles.
 SineCosine<double> rounded_sine_cosine(const Ball<DoubleDouble>& angle);
 
 // ---------------------------------------------------------------------------------------------------------------
@@ -34,35 +35,54 @@ struct Approximation {
   }
 };
 
-/// a + b for |a| >= |b|, up to 2^-104 of it.
-inline DoubleDouble sum_of_falling(const DoubleDouble& a, const DoubleDouble& b) {
-  const DoubleDouble high = fast_two_sum(a.high, b.high);
-  return fast_two_sum(high.high, high.low + (a.low + b.low));
-}
-
-/// c_1 + z (c_2 + z (c_3 + ...)), the terms from the third on in doubles.
-///
-/// Error bound, with u = 2^-53 and z < 0.618, as in near_zero(): the terms from c_3 to c_9 err by 2.3 u c_3, their
-/// product with z by u z c_3 more, and by as much again for the low part of z; what is left out is below z^7 c_10. For
-/// the sine, with |c_3| < 2^-12 and c_10 < 2^-65, that is below 2^-63, for the cosine, with |c_3| < 2^-9.4 and c_10 <
-/// 2^-61, below 2^-61; either once more times z. Double-doubles err by less than 2^-100.
-inline DoubleDouble shortened_series(const std::array<DoubleDouble, 13>& c, const DoubleDouble& z) {
-  const double rest = z.high * series<3, 9>(c, z.high);
-  return sum_of_falling(c[0], z * sum_of_falling(c[1], rest));
+/// Sine and cosine of the angles j / 32, j from 0 to 26: all that are nearest to one up to 0.79.
+struct SinesOfTable {
+  static constexpr double steps = 32;  ///< a radian
+  std::array<SineCosine<DoubleDouble>, 27> entries;
+};
+inline const SinesOfTable& sines_of_table() {
+  static const SinesOfTable made = [] {
+    SinesOfTable table;
+    for (std::size_t j = 0; j < table.entries.size(); ++j) {
+      const auto a = sine_cosine<Ball<DoubleDouble>>(Ball<DoubleDouble>(static_cast<double>(j) / SinesOfTable::steps));
+      table.entries[j] = {a.sine.middle, a.cosine.middle};
+    }
+    return table;
+  }();
+  return made;
 }
 
 /// The sine and the cosine of r, |r| from 2^-60 to 0.786.
 struct ApproximateSineCosine {
   Approximation sine, cosine;
 };
+
+/// By those of the nearest angle a of the table, and of d = r - a, |d| <= 2^-6 (1 + 2^-40): sin r = sin a + (cos a d +
+/// (cos a s - sin a c)), cos r = cos a - (sin a d + (sin a s + cos a c)), where s = sin d - d and c = 1 - cos d.
+///
+/// Error bound, with u = 2^-53. a is short, and d is exact but for 2^-106 of it. c <= 2^-13 is summed in doubles: it
+/// errs by 3 u of itself for its roundings, by 2^-65 for what d is besides its leading double, and by 2^-76 for what
+/// the series leaves out. s <= d z / 6 errs by 3 u of itself, and by d z^4 / 9!. The products of d and the leading
+/// numbers of the table are exact; those of its low parts are rounded below 2^-106. What stands in the outer brackets,
+/// without the exact product, is below 2^-12 for the cosine and below 2^-12 sin a + d z / 2 for the sine, and its three
+/// sums err by u of it each. In all less than 2^-63 for the cosine, 2^-63 sin a + d (2^-52 z + 2^-100) for the sine.
 inline ApproximateSineCosine approximately_near_zero(const DoubleDouble& r) {
-  const DoubleDouble z = r * r;
-  const double square = z.high * z.high;
-  constexpr double of_sine = 0x1p-62, of_cosine = 0x1p-60;  // twice the bounds
-  constexpr double of_others = 0x1p-95;                     // and of all that double-doubles do
-  const DoubleDouble sine = sum_of_falling(r, r * (z * shortened_series(sine_series, z)));
-  const DoubleDouble cosine = sum_of_falling(1.0, z * shortened_series(cosine_series, z));
-  return {{sine, std::abs(r.high) * (of_sine * square + of_others)}, {cosine, of_cosine * square + of_others}};
+  constexpr double to_integer = 0x1.8p52;                                            // a sum with it has the unit 1
+  constexpr double of_both = 0x1p-62, of_small_sine = 0x1p-51, of_others = 0x1p-95;  // twice the bounds, at least
+  const double sign = r.high < 0 ? -1 : 1;
+  const double j = (sign * r.high * SinesOfTable::steps + to_integer) - to_integer;
+  const auto& [sine, cosine] = sines_of_table().entries[static_cast<std::size_t>(j)];
+  const DoubleDouble d = fast_two_sum(sign * r.high - j / SinesOfTable::steps, sign * r.low);
+  const double z = d.high * d.high;
+  const double s = d.low + d.high * (z * series<1, 3>(sine_series, z));
+  const double c = -(z * series<1, 4>(cosine_series, z));
+  const DoubleDouble along = two_product(cosine.high, d.high), across = two_product(sine.high, d.high);
+  const double more = along.low + ((cosine.low * d.high + sine.low) + (cosine.high * s - sine.high * c));
+  const double less = across.low + ((sine.low * d.high - cosine.low) + (sine.high * s + cosine.high * c));
+  const DoubleDouble up = fast_two_sum(sine.high, along.high), down = fast_two_sum(cosine.high, -across.high);
+  const DoubleDouble of_sine = fast_two_sum(up.high, up.low + more);
+  const double sine_error = of_both * sine.high + std::abs(d.high) * (of_small_sine * z + of_others);
+  return {{{sign * of_sine.high, sign * of_sine.low}, sine_error}, {fast_two_sum(down.high, down.low - less), of_both}};
 }
 
 }  // namespace detail

@@ -46,6 +46,7 @@ struct Spin {
   /// lose their low part count for nothing beside that of the greatest, if this is in the range that is asked for.
   /// Beyond it all bounds are carried along.
   Ball<DoubleDouble> rate() const {
+    if (still()) return Ball<DoubleDouble>(0.0);
     const auto [x, y, z] = velocity;
     const double greatest = std::max({std::abs(x), std::abs(y), std::abs(z)});
     if (!(greatest >= 0x1p-200 && greatest <= 0x1p400)) return square_root(squared_rate<Ball<DoubleDouble>>());

@@ -113,6 +113,8 @@ class TurningBoxes {
     const auto waits = this->waits(frame, way, stretch);
     return *std::min_element(waits.begin(), waits.end());
   }
+  /// For how much of a stretch a condition of a way is broken for certain, all the time.
+  double closed_wait(const PairFrame<Degree>& frame, int way, double stretch) const;
 
   /// How deep the two are in each other at t, in doubles: along the way that is the least blocked.
   double depth(double t) const;

@@ -110,6 +110,21 @@ double TurningBoxes<Degree>::open_for(const PairFrame<Degree>& frame, int way, d
   return wait;
 }
 
+/// every_jet() takes away no more than `rounding`, and no more is lost in computing f: the condition is at most f + 2
+/// rounding.
+template <int Degree>
+double TurningBoxes<Degree>::closed_wait(const PairFrame<Degree>& frame, int way, double stretch) const {
+  if (!frame.certain) return 0;
+  double wait = 0;
+  every_jet(frame, way, stretch, [&](int, const Jet& f, const TurningBounds& bounds) {
+    const double rounding = bounds.rounding + PairFrame<Degree>::rounding * (box_a_.lengths() + box_b_.lengths());
+    const Jet broken{-(f.value + 2 * rounding), -f.rate, -f.bend};
+    wait = std::max(wait, positive_for(broken, bounds.third, stretch));
+    return wait < stretch;
+  });
+  return wait;
+}
+
 template <int Degree>
 std::array<double, 16> TurningBoxes<Degree>::waits(const PairFrame<Degree>& frame, int way, double stretch) const {
   std::array<double, 16> waits;

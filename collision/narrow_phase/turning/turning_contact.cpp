@@ -4,6 +4,7 @@
 #include "collision/narrow_phase/half_space_contact.hpp"
 #include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/narrow_phase/lowest_place.hpp"
+#include "collision/narrow_phase/pair_tests.hpp"
 #include "collision/narrow_phase/turning/corners_of_shape.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/narrow_phase/turning/remembered_signs.hpp"
@@ -90,6 +91,29 @@ auto without_turning(const Body<Degree>& a, const Body<Degree>& b, const Ask& as
   return ask(Still{plane, a.motion.path}, ball);
 }
 
+/// Whether a body keeps the orientation in which its shape is given, exactly.
+template <int Degree>
+bool stands_as_given(const Body<Degree>& body) {
+  const auto& motion = body.motion;
+  return motion.angular_velocity.isZero(0) && motion.orientation.vec().isZero(0) &&
+         body.shape.rotation == Eigen::Matrix3d::Identity();
+}
+
+/// Whether both are solids and stand as they are given. Their contacts are those of bodies that do not turn, the same
+/// doubles: nothing is rounded in placing such shapes, and the two laws are one then.
+template <int Degree>
+bool both_stand(const Body<Degree>& a, const Body<Degree>& b) {
+  const auto is_solid = [](const Shape& shape) { return !concave(shape) && !unbounded(shape); };
+  return is_solid(a.shape.shape) && is_solid(b.shape.shape) && stands_as_given<Degree>(a) && stands_as_given<Degree>(b);
+}
+
+/// Calls ask(a, b) with two bodies that stand as they are given, as bodies that do not turn.
+template <int Degree, class Ask>
+auto as_they_stand(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask) {
+  using Still = TranslatingShape<Degree>;
+  return ask(Still{a.shape, a.motion.path}, Still{b.shape, b.motion.path});
+}
+
 /// The first double in (t, horizon] at which two bodies that overlap just after t do so more than they do then, by more
 /// than roundings of their coordinates, or `never`. It is found as the contact of one body with the other made smaller.
 template <class Pair, int Degree>
@@ -164,10 +188,14 @@ Contact TurningContact<Degree>::contact_at(const Body& a, const Body& b, double 
   if (is_ball(a.shape) && is_ball(b.shape)) {
     return without_turning<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::contact_at(x, y, t); });
   }
+  if (both_stand<Degree>(a, b)) {
+    return as_they_stand<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::contact_at(x, y, t); });
+  }
   const PlacedShape placed_a = placed_at<Degree>(a, t);
   const PlacedShape placed_b = placed_at<Degree>(b, t);
   Contact contact = collision::contact_at<PointMotion<Degree>>({placed_a, a.motion.path}, {placed_b, b.motion.path}, t);
   if (is_ball(a.shape) || is_ball(b.shape)) return contact;
+  if (a.motion.spin().still() && b.motion.spin().still()) return contact;  // all points move alike
   const PointRates<Degree> rates(a.motion, b.motion, t);
   const auto parting = [&](const Vector3d& x) { return dot(contact.normal, rates.velocity(x)); };
   if (parting(contact.point) < -rates.noise(contact.point)) return contact;
@@ -239,6 +267,19 @@ ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<De
   return {t <= horizon ? t : never, true};
 }
 
+/// The first contact in [t0, horizon] of two bodies that stand as they are given; none where they overlap at t0, or
+/// begin to do so without approaching faster than by roundings, which is judged otherwise where bodies turn.
+template <int Degree>
+std::optional<double> contact_of_standing(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon,
+                                          ContactMode mode) {
+  const double first = as_they_stand<Degree>(a, b, [&](const auto& x, const auto& y) {
+    return collision::first_contact(x, y, t0, horizon, ContactMode::transparent);
+  });
+  const bool counts =
+      first == never || mode == ContactMode::transparent || (first > t0 && approach_at<Degree>(a, b, first));
+  return counts ? std::optional(first) : std::nullopt;
+}
+
 /// The first contact in [t0, horizon], or with `estimate` an earlier time, of bodies that doubles have not proved apart
 /// just after t0. Bodies that overlap without a contact are followed from the beginning of their motions; so that
 /// repeated calls cost no more than twice as much as one, they are also followed equally far ahead of t0, up to
@@ -246,6 +287,9 @@ ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<De
 template <int Degree>
 ContactEstimate contact_from(const Body<Degree>& a, const Body<Degree>& b, double t0, double horizon, double farthest,
                              ContactMode mode, bool estimate) {
+  if (both_stand<Degree>(a, b)) {
+    if (const auto contact = contact_of_standing<Degree>(a, b, t0, horizon, mode)) return {*contact, true};
+  }
   return with_ways<Degree>(a, b, [&](const auto& pair) -> ContactEstimate {
     using Pair = std::decay_t<decltype(pair)>;
     using Ways = WaysApart<Pair, RememberedSigns&>;
@@ -296,9 +340,15 @@ ContactEstimate TurningContact<Degree>::estimated_contact(const Body& a, const B
 }
 
 template <int Degree>
-double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
+double TurningContact<Degree>::apart_until(const Body& a, const Body& b, double t0, double horizon,
+                                           PairMemory& memory) {
   if (!(t0 <= horizon)) return never;
   if (!turning_counts(a.shape, b.shape)) return t0;
+  if (both_stand<Degree>(a, b)) {
+    return as_they_stand<Degree>(a, b, [&](const auto& x, const auto& y) {
+      return pair_tests<certificates::PointMotion<Degree>>(x.shape, y.shape).apart_until(x, y, t0, horizon, memory);
+    });
+  }
   return with_ways<Degree>(a, b, [&](const auto& pair) { return pair.apart_until(t0, horizon); });
 }
 
@@ -306,6 +356,9 @@ template <int Degree>
 bool TurningContact<Degree>::in_contact(const Body& a, const Body& b, double t) {
   if (!turning_counts(a.shape, b.shape)) {
     return without_turning<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::in_contact(x, y, t); });
+  }
+  if (both_stand<Degree>(a, b)) {
+    return as_they_stand<Degree>(a, b, [&](const auto& x, const auto& y) { return collision::in_contact(x, y, t); });
   }
   return with_ways<Degree>(
       a, b, [&](const auto& pair) { return WaysApart<std::decay_t<decltype(pair)>>(pair).penetrate(t); });
@@ -316,6 +369,10 @@ double TurningContact<Degree>::first_separation(const Body& a, const Body& b, do
   if (!(t0 <= horizon)) return never;
   if (!turning_counts(a.shape, b.shape)) {
     return without_turning<Degree>(
+        a, b, [&](const auto& x, const auto& y) { return collision::first_separation(x, y, t0, horizon); });
+  }
+  if (both_stand<Degree>(a, b)) {
+    return as_they_stand<Degree>(
         a, b, [&](const auto& x, const auto& y) { return collision::first_separation(x, y, t0, horizon); });
   }
   return with_ways<Degree>(a, b, [&](const auto& pair) {

@@ -104,12 +104,12 @@ class TurningMeshSearch {
    public:
     Front(const TurningMeshSearch& search, double t0, double horizon, ContactMode mode)
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
+      const double from = separated_until(t0);
+      if (from > horizon_) return;
       // What most searches need.
       std::vector<Item> items;
       items.reserve(32), visits_.reserve(32), leaves_.reserve(16);
       queue_ = decltype(queue_)(std::greater<>(), std::move(items));
-      const double from = separated_until(t0);
-      if (from > horizon_) return;
       search_.nodes_.first([&](NodePair nodes) { visits_.push_back({nodes, from}); });
       visit_all();
     }

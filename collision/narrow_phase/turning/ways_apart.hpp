@@ -10,6 +10,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -49,7 +50,9 @@ struct ExactSigns {
 /// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are
 /// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
 /// way, stretch)`, for how long a way that is open just after the time of the frame stays so for certain, `waits`, the
-/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told.
+/// same of each of its conditions by its number, and `stretch(frame, longest)`, how far these can be told; perhaps
+/// `closed_wait(frame, way, stretch)`, with these and `is_thin`, for how long one of its conditions is broken for
+/// certain.
 ///
 /// Laws: what is found depends on exact signs alone, so that it is the same whatever doubles have left out. A contact
 /// is the first double just after which no way is open.
@@ -294,11 +297,47 @@ class WaysApart {
     double first = never;
     // Narrower ones are not open by then.
     const auto least = [&] { return -error - fastest * ((std::min(first, until) - t) * (1 + 0x1p-40)); };
-    every_way(frame, gap, least, [&](int way) {
-      first = std::min(first, opens(way, t, std::min(first, until)));
-      return false;
-    });
+    if constexpr (!requires { pair_.closed_wait(frame, 0, 0.0); }) {
+      every_way(frame, gap, least, [&](int way) {
+        first = std::min(first, opens(way, t, std::min(first, until)));
+        return false;
+      });
+    } else {
+      // An exact look at the widest one mostly leaves few others that may open before. Of these the first come first.
+      struct Other {
+        bool thin;
+        double closed_until;
+        int way;
+      };
+      std::vector<Other> others;
+      bool any = false;
+      every_way(frame, gap, least, [&](int way) {
+        const double end = std::min(first, until);
+        if (!std::exchange(any, true)) {
+          first = opens(way, t, end);
+        } else if (const double closed = closed_until(frame, way, end); closed < end) {
+          others.push_back({pair_.is_thin(frame, way), closed, way});
+        }
+        return false;
+      });
+      std::sort(others.begin(), others.end(), [](const Other& x, const Other& y) {
+        return std::tie(x.thin, x.closed_until, x.way) < std::tie(y.thin, y.closed_until, y.way);
+      });
+      for (const Other& other : others) {
+        const double end = std::min(first, until);
+        if (other.closed_until < end) first = std::min(first, opens(other.way, other.closed_until, end));
+      }
+    }
     return first;
+  }
+
+  /// A time up to `end`, not before that of the frame, until which a way is closed for certain, just after all times
+  /// before it.
+  double closed_until(const Frame& frame, int way, double end) const {
+    const double all = (end - frame.time) * (1 + 0x1p-40);
+    const double wait = pair_.closed_wait(frame, way, pair_.stretch(frame, all));
+    if (wait >= all) return end;
+    return wait > 0 ? std::max(frame.time, next_down(frame.time + wait)) : frame.time;
   }
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.

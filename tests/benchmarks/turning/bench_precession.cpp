@@ -2,6 +2,7 @@
 #include "collision/response/rotation_piece.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/thread_time.hpp"
+#include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
 
 #include <Eigen/Geometry>
@@ -83,37 +84,80 @@ void drift(const Kind& kind) {
   std::printf("%-22s  %.1e\n", kind.name, greatest);
 }
 
-/// 18 bodies between walls, at restitution 1.
-void contacts(double error, std::uint64_t seed, std::uint64_t count) {
+/// What is conserved, of bodies without walls, and sums of magnitudes to compare it with.
+struct Conserved {
+  double energy = 0;
+  Vector3d momentum = Vector3d::Zero(), angular = Vector3d::Zero();  ///< the latter about the common centre of mass
+  double momenta = 0, angular_momenta = 0;
+};
+Conserved conserved(const Turning& world) {
+  const double t = world.now();
+  double mass = 0;
+  Vector3d centre = Vector3d::Zero(), drift = Vector3d::Zero();
+  for (BodyId id = 0; id < world.size(); ++id) {
+    const auto& path = world.motion(id).path;
+    mass += world.mass(id);
+    centre += world.mass(id) * path.position(t), drift += world.mass(id) * path.velocity(t);
+  }
+  centre /= mass, drift /= mass;
+  Conserved sum;
+  for (BodyId id = 0; id < world.size(); ++id) {
+    const FreeTurning turning = world.free_turning(id);
+    const Vector3d velocity = world.motion(id).path.velocity(t);
+    const Vector3d momentum = world.mass(id) * velocity;
+    const Vector3d arm = world.motion(id).path.position(t) - centre;
+    sum.energy += momentum.dot(velocity) + turning.angular_momentum.dot(turning.angular_velocity);
+    sum.momentum += momentum, sum.momenta += momentum.norm();
+    const Vector3d of_path = arm.cross(momentum - world.mass(id) * drift);
+    sum.angular += of_path + turning.angular_momentum;
+    sum.angular_momenta += of_path.norm() + turning.angular_momentum.norm();
+  }
+  return sum;
+}
+
+enum class Around { walls, shell };
+/// 18 bodies at restitution 1, of all kinds of inertia: between walls, or in a hollow box that flies and tumbles
+/// itself, a mesh, so that momenta are conserved.
+void contacts(Around around, double error, std::uint64_t seed, std::uint64_t count) {
   WorldOptions options{.response = Response::elastic, .shortest_flight = 1e-12, .orientation_error = error};
-  options.walls = Walls{Vector3d::Constant(-3), Vector3d::Constant(3)};
+  if (around == Around::walls) options.walls = Walls{Vector3d::Constant(-3), Vector3d::Constant(3)};
   Turning world(options);
   tests::Random random(seed);
   const Vector3d halves[] = {{0.8, 0.2, 0.3}, {0.7, 0.7, 0.1}, {0.1, 0.1, 0.9}, {0.5, 0.5, 0.5}};
+  Vector3d momentum = Vector3d::Zero();
   for (int i = 0; i < 18; ++i) {
     Turning::Motion motion;
     motion.path.coefficients = {Vector3d(i % 3 * 2 - 2, i / 3 % 3 * 2 - 2, i / 9 * 2 - 1), 2 * random_vector(random)};
     motion.angular_velocity = 4 * random_vector(random);
-    world.add_body({.shape = Box{halves[i % 4]}, .motion = {motion}, .mass = random.between(1, 3)});
+    const double mass = random.between(1, 3);
+    momentum += mass * motion.path.coefficients[1];
+    world.add_body({.shape = Box{halves[i % 4]}, .motion = {motion}, .mass = mass});
   }
-  const auto energy = [&] {
-    double sum = 0;
-    for (BodyId id = 0; id < world.size(); ++id) {
-      const FreeTurning turning = world.free_turning(id);
-      sum += world.mass(id) * world.motion(id).path.velocity(world.now()).squaredNorm() +
-             turning.angular_momentum.dot(turning.angular_velocity);
-    }
-    return sum;
-  };
-  const double before = energy();
+  if (around == Around::shell) {
+    Turning::Motion motion;
+    constexpr double mass = 50;
+    // All together stay where they are: far from the origin places are rounded more, and with them angular momenta.
+    motion.path.coefficients = {Vector3d::Zero(), -momentum / mass};
+    motion.angular_velocity = {0.1, 0.2, -0.1};
+    const Eigen::Matrix3d inertia = Vector3d(300, 400, 500).asDiagonal();
+    const MeshShape box{samples::cuboid(Vector3d::Constant(3)), 1};
+    world.add_body({.shape = box, .motion = {motion}, .mass = mass, .inertia = inertia});
+  }
+  const Conserved before = conserved(world);
   const double start = benchmarks::thread_seconds();
   while (world.counters().contacts < count) world.advance_to(world.now() + 10);
   const WorldCounters counters = world.counters();
-  std::printf("error %g, seed %d: %llu contacts, %llu pieces, %llu resets, energy %+.1e, %.1f s\n", error,
-              static_cast<int>(seed), static_cast<unsigned long long>(counters.contacts),
+  const Conserved after = conserved(world);
+  std::printf("%s, error %g, seed %d: %llu contacts, %llu pieces, %llu resets, energy %+.1e",
+              around == Around::shell ? "shell" : "walls", error, static_cast<int>(seed),
+              static_cast<unsigned long long>(counters.contacts),
               static_cast<unsigned long long>(counters.rotation_pieces),
-              static_cast<unsigned long long>(counters.orientation_resets), energy() / before - 1,
-              benchmarks::thread_seconds() - start);
+              static_cast<unsigned long long>(counters.orientation_resets), after.energy / before.energy - 1);
+  if (around == Around::shell) {
+    std::printf(", momentum %.1e, angular %.1e", (after.momentum - before.momentum).norm() / before.momenta,
+                (after.angular - before.angular).norm() / before.angular_momenta);
+  }
+  std::printf(", %.1f s\n", benchmarks::thread_seconds() - start);
 }
 
 /// Many slender bodies that fly and turn, as the solids that they are and as if their moments were equal.
@@ -154,9 +198,11 @@ int main(int argc, char** argv) {
   std::printf("\nenergy after 10^6 pieces, greatest change of three runs\n");
   for (const Kind& kind : kinds) drift(kind);
   const std::uint64_t count = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 20'000;
-  std::printf("\nenergy over contacts\n");
+  std::printf("\nenergy and momenta over contacts\n");
   for (const double error : {1e-2, 1e-3}) {
-    for (const std::uint64_t seed : {1, 2}) contacts(error, seed, count);
+    for (const std::uint64_t seed : {1, 2}) {
+      for (const Around around : {Around::walls, Around::shell}) contacts(around, error, seed, count);
+    }
   }
   std::printf("\n1 000 bodies, 2 s\n");
   for (const double rate : {1.0, 10.0}) {

@@ -1,5 +1,6 @@
 // Worlds of cubes, rods and rings that turn, with one moment of inertia and with their own, beside the same without
-// spin.
+// spin. bench_turning_worlds [FOLDER [SCENE]]: of a scene alone one run.
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
@@ -9,6 +10,8 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace {
 
@@ -24,20 +27,28 @@ struct Scene {
   double rate;    ///< rad/s
   double seconds = 2;
   bool precesses = false;  ///< it has its own moments of inertia, in place of one for all axes
+  bool passes = false;     ///< through others, in open space: what does not turn then never does
+  bool turned = false;     ///< to random orientations
 };
 
-/// Bodies on a lattice, their velocities at random up to 1 in each coordinate, between elastic walls.
+/// If it is not empty, only the scene of this name is run, once: so its instructions can be counted.
+std::string only;
+bool found = false;
+
+/// Bodies on a lattice, their velocities at random up to 1 in each coordinate, between elastic walls or without any.
 template <class World>
 void run(std::FILE* csv, const char* name, const Scene& scene) {
   constexpr bool turning = turns<typename World::Motion>;
+  if (!only.empty() && only != name) return;
+  found = true;
   const double volume = 8 * scene.half.prod() / scene.packing;
   const int side = static_cast<int>(std::ceil(std::cbrt(scene.bodies)));
   const double spacing = std::cbrt(volume * scene.bodies) / side;
-  WorldOptions options{.response = Response::elastic};
-  options.walls = Walls{Vector3d::Zero(), Vector3d::Constant(spacing * side)};
+  WorldOptions options{.response = scene.passes ? Response::none : Response::elastic};
+  if (!scene.passes) options.walls = Walls{Vector3d::Zero(), Vector3d::Constant(spacing * side)};
   double best = never;
   WorldCounters counters;
-  for (int round = 0; round < 3; ++round) {
+  for (int round = 0; round < (only.empty() ? 3 : 1); ++round) {
     tests::Random random(1);
     const double start = benchmarks::thread_seconds();
     World world(options);
@@ -54,6 +65,15 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
         if (!scene.precesses) body.inertia = 2.0 / 3 * scene.half.squaredNorm() / 3;
       } else {
         body.motion = {{{place, velocity}}};
+      }
+      if (scene.turned) {
+        const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
+        const Eigen::Quaterniond orientation = Eigen::Quaterniond(random.between(-1, 1), x, y, z).normalized();
+        if constexpr (turning) {
+          body.motion[0].orientation = orientation;
+        } else {
+          body.orientation = orientation;
+        }
       }
       world.add_body(body);
     }
@@ -72,6 +92,7 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
 
 int main(int argc, char** argv) {
   const std::string folder = argc > 1 ? argv[1] : ".";
+  if (argc > 2) only = argv[2];
   std::FILE* const csv = std::fopen((folder + "/turning_worlds.csv").c_str(), "w");
   if (!csv) return std::perror("turning_worlds.csv"), 1;
   std::fprintf(csv, "scene,bodies,packing,rate,ms,contacts,pair_tests\n");
@@ -83,14 +104,34 @@ int main(int argc, char** argv) {
     run<TurningWorld<1>>(csv, "cubes at 1 rad/s", {1000, packing, Box{cube}, cube, 1});
     run<TurningWorld<1>>(csv, "cubes at 10 rad/s", {1000, packing, Box{cube}, cube, 10});
   }
+  const Vector3d flat(1, 1, 0.25);
+  const MeshShape ring{samples::torus(8, 4), 1};
+  const Capsule capsule{0.2, 0.5};
+  std::vector<Vector3d> corners;
+  for (int d = 0; d < 3; ++d) corners.push_back(Vector3d::Unit(d)), corners.push_back(-Vector3d::Unit(d));
+  const ConvexHull octahedron = convex_hull(corners);
+  std::printf("1000 bodies that pass through each other and do not turn: in a World, and in a TurningWorld\n");
+  const auto passing = [&](const char* name, const char* name_turning, const Scene& scene) {
+    run<World<1>>(csv, name, scene);
+    run<TurningWorld<1>>(csv, name_turning, scene);
+  };
+  passing("passing cubes at 1 %", "passing cubes at 1 % in a TurningWorld",
+          {1000, 0.01, Box{cube}, cube, 0, 20, false, true});
+  passing("passing cubes at 10 %", "passing cubes at 10 % in a TurningWorld",
+          {1000, 0.1, Box{cube}, cube, 0, 2, false, true});
+  passing("passing turned cubes", "passing turned cubes in a TurningWorld",
+          {1000, 0.01, Box{cube}, cube, 0, 20, false, true, true});
+  passing("passing capsules", "passing capsules in a TurningWorld",
+          {1000, 0.01, capsule, Vector3d(0.2, 0.2, 0.7), 0, 20, false, true});
+  passing("passing octahedra", "passing octahedra in a TurningWorld",
+          {1000, 0.01, octahedron, Vector3d::Ones(), 0, 20, false, true});
+  passing("passing rings", "passing rings in a TurningWorld", {1000, 0.01, ring, flat, 0, 20, false, true});
   std::printf("1000 rods of 1 : 10 at 0.2 %%, 2 s\n");
   run<World<1>>(csv, "rods that keep their orientation", {1000, 0.002, Box{rod}, rod, 0});
   run<TurningWorld<1>>(csv, "rods at 1 rad/s", {1000, 0.002, Box{rod}, rod, 1});
   run<TurningWorld<1>>(csv, "rods at 10 rad/s", {1000, 0.002, Box{rod}, rod, 10});
   run<TurningWorld<1>>(csv, "rods that precess at 1 rad/s", {1000, 0.002, Box{rod}, rod, 1, 2, true});
   run<TurningWorld<1>>(csv, "rods that precess at 10 rad/s", {1000, 0.002, Box{rod}, rod, 10, 2, true});
-  const Vector3d flat(1, 1, 0.25);
-  const MeshShape ring{samples::torus(8, 4), 1};
   for (const auto& [packing, seconds] : {std::pair(0.01, 20.0), {0.1, 2.0}}) {
     std::printf("1000 rings of 64 triangles at %g %%, %g s\n", 100 * packing, seconds);
     run<World<1>>(csv, "rings that keep their orientation", {1000, packing, ring, flat, 0, seconds});
@@ -99,5 +140,6 @@ int main(int argc, char** argv) {
     run<TurningWorld<1>>(csv, "rings that precess at 1 rad/s", {1000, packing, ring, flat, 1, seconds, true});
     run<TurningWorld<1>>(csv, "rings that precess at 10 rad/s", {1000, packing, ring, flat, 10, seconds, true});
   }
+  if (!found) return std::fprintf(stderr, "bench_turning_worlds: there is no scene '%s'\n", only.c_str()), 2;
   return std::fclose(csv) == 0 ? 0 : 1;
 }

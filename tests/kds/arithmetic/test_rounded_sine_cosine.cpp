@@ -37,6 +37,17 @@ TEST_CASE("the sine and the cosine rounded to doubles are those of double-double
   }
 }
 
+TEST_CASE("the sine and the cosine of angles at and between those of a table are rounded, too") {
+  for (int j = -27 * 64; j <= 27 * 64; ++j) {
+    const double high = j / 2048.0;  // the table has each 64th of them; half-way between two the nearest one changes
+    for (const double low : {0.0, 0x1p-60 * high, -0x1p-60 * high, 0x1p-105 * high}) {
+      for (const double moved : {high, std::nextafter(high, 1.0), std::nextafter(high, -1.0)}) {
+        check_same({fast_two_sum(moved, low), 0x1p-100 * std::abs(high)});
+      }
+    }
+  }
+}
+
 TEST_CASE("what is left to double-doubles is little, and the bound of the others is one") {
   Random random(1);
   int left = 0;
@@ -51,7 +62,7 @@ TEST_CASE("what is left to double-doubles is little, and the bound of the others
     left += !(sine.rounds_surely() && cosine.rounds_surely());
   }
   CHECK(left > 0);
-  CHECK(left < angles / 500);
+  CHECK(left < angles / 100);
 }
 
 }  // namespace test_rounded_sine_cosine
