@@ -7,6 +7,7 @@
 #include "io/event_csv.hpp"
 #include "io/event_parts.hpp"
 #include "io/gltf.hpp"
+#include "io/number_text.hpp"
 #include "io/one_line.hpp"
 #include "io/output_file.hpp"
 #include "io/replay.hpp"
@@ -25,6 +26,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
+#include <functional>
 #include <list>
 #include <optional>
 #include <random>
@@ -163,7 +165,17 @@ class Simulation {
     checkpoints_.emplace(arguments_.checkpoint, team_, turn);
   }
 
-  void run() {
+  /// What to do when the run ends early.
+  std::string way_on() const {
+    if (arguments_.checkpoint.empty()) return "there is no checkpoint to go on from: --checkpoint makes some";
+    if (!saved_) return "there is no checkpoint yet to go on from";
+    return "--resume goes on from " + arguments_.checkpoint + ", at " + about(*saved_) + " s";
+  }
+
+  /// `tell_way_on`: is given it at once, and whenever it has changed.
+  void run(std::function<void()> tell_way_on) {
+    tell_way_on_ = std::move(tell_way_on);
+    tell_way_on_();
     result_ = kds::io::run(scene_, arguments_.run, sinks_);
     progress_.reset();
   }
@@ -208,6 +220,7 @@ class Simulation {
     require_same_scene(scene_, arguments_.scene, checkpoint_);
     check_resume(arguments_, scene_, checkpoint_);
     arguments_.run.resume = &checkpoint_.world;
+    saved_ = checkpoint_.time;
     if (checkpoint_.bodies.empty()) return;
     bodies_.emplace(arguments_.checkpoint, checkpoint_, team_.rank(), team_.count()).check();
     arguments_.run.resume_bodies = [this](std::vector<char>& block) { return bodies_->read(block); };
@@ -224,6 +237,8 @@ class Simulation {
                             .events = events_ ? std::optional(events_->flush()) : std::nullopt,
                             .parts = parts_ ? parts_->places() : std::vector<FilePlace>(),
                             .world = world});
+      saved_ = time;
+      tell_way_on_();
     };
   }
 
@@ -246,6 +261,8 @@ class Simulation {
   Checkpoint checkpoint_;  ///< from which the run goes on, if it does; else its run alone counts
   std::optional<CheckpointReader> bodies_;
   std::optional<CheckpointWriter> checkpoints_;
+  std::optional<double> saved_;  ///< s of simulated time: of the last checkpoint that there is
+  std::function<void()> tell_way_on_;
   double read_seconds_ = 0;
   Scene scene_;
   EventSinks sinks_;
@@ -368,16 +385,27 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
     unlock();
     return end_with(failure, is_first);
   }
+  // Of a run that is told to end, or whose processes are, since one of them is lost.
+  std::string way_on;
+  const auto at_signals = [&] {
+    if (!together && arguments.checkpoint.empty()) return;
+    way_on = "; " + simulation->way_on();
+    say_at_signals(one_line(std::string(name) + ": ended by a signal" + way_on),
+                   together ? together->may_say : nullptr);
+  };
   failure = attempt(name, arguments, [&] {
-    simulation->run();
+    simulation->run(at_signals);
+    say_at_signals("");
     simulation->close();
     // All outputs, of all processes, are whole before one appears: none comes here before the others do.
     team.of_first(true);
     simulation->commit();
     unlock();
   });
+  if (failure.code == run_failed) failure.line += way_on;
   if (failure.code != done && team.count() == 1) unlock();
   if (failure.code != done && team.count() > 1) {
+    together->may_say();  // The others, which are told to end, need not say it again.
     failure.line += in_process(team.rank());
     simulation.reset();  // removes temporary files
     // What fails in all processes is said once: process 0 ends the others while they wait.
