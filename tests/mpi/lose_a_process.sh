@@ -1,6 +1,7 @@
 #!/bin/sh
 # lose_a_process.sh RANK FILE MPIRUN...: runs a command that starts processes as mpirun does, its children in the order
-# of their ranks, kills the one of this rank once a file of this pattern is there with something in it, and ends as the command does.
+# of their ranks, kills the one of this rank once a file of this pattern is there with something in it, and ends as the
+# command does.
 rank=$1 file=$2
 shift 2
 "$@" &
