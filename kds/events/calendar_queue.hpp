@@ -22,7 +22,8 @@ namespace kds {
 /// Each slot that has an event has a record, which is used again when the event is over. So a slot without event takes
 /// four bytes, and slots may be numbered sparsely; a record takes 36 to 52, and its rank, unless that is the slot or
 /// lasts (Rank::lasts, event_queue.hpp). set() allocates where more slots have events than ever before, resize() for
-/// its slots, and set() and top() where more events than ever before are on the present day, which has about one.
+/// its slots, and set() and top() where more events than ever before are on the present day, which has about one; fit()
+/// gives that back.
 ///
 /// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
 /// years to come. A day is an unsorted, doubly linked list of its records, so that set and clear touch a constant
@@ -46,6 +47,9 @@ class CalendarQueue {
   void set(Slot slot, double time);
   void clear(Slot slot);
   void pop() { clear(top().slot); }
+  /// Gives back the memory of records that no event needs now. Changes nothing else that can be observed. Cost: O(1) a
+  /// record.
+  void fit();
   QueuedEvent top() const;
 
   /// Calls visit(slot) for each event not later than `time`, in no particular order. Unlike top() it rearranges
@@ -193,6 +197,24 @@ void CalendarQueue<Rank>::forget_all() {
   const std::uint64_t operations = operations_;
   *this = CalendarQueue(rank_);
   operations_ = operations;
+}
+
+template <QueueRank Rank>
+void CalendarQueue<Rank>::fit() {
+  CalendarQueue fitted(rank_);
+  fitted.nodes_.reserve(size_), fitted.slots_.reserve(size_);
+  if constexpr (keeps_ranks) fitted.ranks_.reserve(size_);
+  fitted.records_.swap(records_);
+  for (std::uint32_t record = 0; record < nodes_.size(); ++record) {
+    const Slot slot = slots_[record];
+    // A record of no slot; no new record has this number yet.
+    if (fitted.records_[slot] != record) continue;
+    fitted.records_[slot] = none;
+    fitted.set(slot, nodes_[record].time);
+    if constexpr (keeps_ranks) fitted.ranks_[fitted.records_[slot]] = ranks_[record];
+  }
+  fitted.operations_ = operations_;
+  *this = std::move(fitted);
 }
 
 /// Not inlined, since set() rarely needs it.

@@ -57,10 +57,10 @@ template <class Motion>
 struct Undivided {
   collision::WorldOptions options;
   double end_time = 1;
-  std::function<void(collision::BasicWorld<Motion>&)> fill;  ///< adds the bodies
+  std::function<void(collision::BasicWorld<Motion>&)> fill;   ///< adds the bodies
   std::function<std::vector<collision::tests::Event>()> run;  ///< the events as one world
   bool (*untold)(const collision::tests::Event&) = nullptr;   ///< which kinds are not written down of both
-  bool surely_divided = false;  ///< some steps are run in domains
+  bool surely_divided = false;                                ///< some steps are run in domains
 };
 
 template <class Motion>

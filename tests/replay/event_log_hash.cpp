@@ -92,10 +92,11 @@ Replay in_all_ways(std::string name, const WorldOptions& options, const MakeScen
                                                     .end_time = scene().end_time,
                                                     .fill = fill,
                                                     .run = [=] { return run<Degree>(scene(), options); },
-                                                    .untold = [](const Event& event) {
-                                                      return is_pair_event(event) || event.kind == Kind::rests ||
-                                                             event.kind == Kind::wakes;
-                                                    },
+                                                    .untold =
+                                                        [](const Event& event) {
+                                                          return is_pair_event(event) || event.kind == Kind::rests ||
+                                                                 event.kind == Kind::wakes;
+                                                        },
                                                     .surely_divided = surely_divided});
   return replay;
 }

@@ -202,14 +202,14 @@ void add_worlds(std::vector<Replay>& replays) {
       for (const auto& [broad_phase, way, what] : broad_phases) add(std::string(way), broad_phase, Drive::at_once);
       const WorldOptions options = add("windows", BroadPhaseKind::automatic, Drive::in_windows);
       add("snapshots", BroadPhaseKind::automatic, Drive::by_snapshots);
-      add_divisions<certificates::RigidMotion<Degree>>(replay, 2,
-                                         {.options = options,
-                                          .end_time = end_time,
-                                          .fill = [=](TurningWorld<Degree>& world) { fill(world, bodies, 11); },
-                                          .run = [=] { return run<Degree>(bodies, options, Drive::at_once); },
-                                          .untold = [](const Event& event) {
-                                            return is_pair_event(event) || event.kind == Kind::rebound_suppressed;
-                                          }});
+      add_divisions<certificates::RigidMotion<Degree>>(
+          replay, 2,
+          {.options = options,
+           .end_time = end_time,
+           .fill = [=](TurningWorld<Degree>& world) { fill(world, bodies, 11); },
+           .run = [=] { return run<Degree>(bodies, options, Drive::at_once); },
+           .untold =
+               [](const Event& event) { return is_pair_event(event) || event.kind == Kind::rebound_suppressed; }});
       replays.push_back(std::move(replay));
     }
   }

@@ -42,7 +42,7 @@ void change(TurningWorld<Degree>& world, std::uint64_t seed, std::size_t k) {
   if (!world.contains(id)) return;
   if (what == 2) world.remove_body(id);
   if (what == 3) world.set_restitution(id, 1);
-  if (what < 4) return;
+  if (what < 4 || world.attached_to(id)) return;
   const RigidMotion<Degree> before = world.motion(id).restarted(now);
   if (what == 4) motion.path.coefficients[0] = before.path.coefficients[0];
   if (random.one_in(2)) motion.orientation = before.orientation;
