@@ -1,5 +1,5 @@
 // Event queue in buckets of time: a calendar whose days adapt to the events in it. calendar_queue_years.hpp has the
-// turn of its days and years.
+// turn of its days and years, and how it gives memory back.
 #pragma once
 
 #include "kds/events/event_queue.hpp"
@@ -197,24 +197,6 @@ void CalendarQueue<Rank>::forget_all() {
   const std::uint64_t operations = operations_;
   *this = CalendarQueue(rank_);
   operations_ = operations;
-}
-
-template <QueueRank Rank>
-void CalendarQueue<Rank>::fit() {
-  CalendarQueue fitted(rank_);
-  fitted.nodes_.reserve(size_), fitted.slots_.reserve(size_);
-  if constexpr (keeps_ranks) fitted.ranks_.reserve(size_);
-  fitted.records_.swap(records_);
-  for (std::uint32_t record = 0; record < nodes_.size(); ++record) {
-    const Slot slot = slots_[record];
-    // A record of no slot; no new record has this number yet.
-    if (fitted.records_[slot] != record) continue;
-    fitted.records_[slot] = none;
-    fitted.set(slot, nodes_[record].time);
-    if constexpr (keeps_ranks) fitted.ranks_[fitted.records_[slot]] = ranks_[record];
-  }
-  fitted.operations_ = operations_;
-  *this = std::move(fitted);
 }
 
 /// Not inlined, since set() rarely needs it.
