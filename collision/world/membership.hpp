@@ -4,6 +4,7 @@
 #include "collision/world/motion_updates.hpp"
 #include "collision/world/world_parts.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -34,10 +35,11 @@ class Membership {
   /// stays: ids have slots in them, and any slot may be given again. Cost: O(1) a body that goes, amortised. To be
   /// called between steps.
   void fit() {
-    constexpr std::size_t few = 4096;  // which take little memory
-    constexpr std::size_t dense = 16;  // slots for a body, or it would cost too much to look at all of them
+    constexpr std::size_t least_worth_it = 4096;
+    constexpr std::size_t most_slots_a_body = 16;  // or it would cost too much to look at all slots
     most_ = std::max(most_, bodies_.size());
-    if (most_ >= few && 4 * bodies_.size() <= most_ && dense * most_ >= bodies_.slots()) fit_to_rest();
+    if (most_ < least_worth_it || 4 * bodies_.size() > most_) return;
+    if (most_slots_a_body * most_ >= bodies_.slots()) fit_to_rest();
   }
   /// Makes a change of those with which a body that has entered may collide. The body leaves the broad phase, which
   /// ends all its pairs except those that overlap, and enters it again.
