@@ -17,7 +17,7 @@ class CoarseNumber {
   CoarseNumber& operator*=(double factor) { return *this = *this * factor; }
 
  private:
-  std::uint32_t bits_;
+  std::uint32_t bits_ = 0;
 };
 
 /// Counts one more, up to the greatest number that there is.
