@@ -190,17 +190,20 @@ double BasicWorld<Motion>::restitution(BodyId id) const {
 
 template <class Motion>
 std::uint32_t BasicWorld<Motion>::category(BodyId id) const {
-  return body_of(*engine_, id).filter.category;
+  const auto& bodies = engine_->bodies();
+  return bodies.filter(bodies.slot_of(id)).category;
 }
 
 template <class Motion>
 std::uint32_t BasicWorld<Motion>::collides_with(BodyId id) const {
-  return body_of(*engine_, id).filter.collides_with;
+  const auto& bodies = engine_->bodies();
+  return bodies.filter(bodies.slot_of(id)).collides_with;
 }
 
 template <class Motion>
 std::uint32_t BasicWorld<Motion>::group(BodyId id) const {
-  return body_of(*engine_, id).filter.group;
+  const auto& bodies = engine_->bodies();
+  return bodies.filter(bodies.slot_of(id)).group;
 }
 
 template <class Motion>

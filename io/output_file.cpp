@@ -22,6 +22,14 @@ using std::filesystem::file_type;
 constexpr std::size_t most_files = 8;
 std::array<std::atomic<char*>, most_files> open_temporaries{};
 
+/// What a signal handler writes: one of two lines, so that the one which it may be reading is not changed.
+struct LastLine {
+  std::string text;
+  bool (*may_say)() = nullptr;
+};
+std::array<LastLine, 2> last_lines;
+std::atomic<const LastLine*> last_line = nullptr;
+
 /// Temporary files of one name that processes which were killed may have left: looked past.
 constexpr int most_left = 1000;
 
@@ -48,6 +56,9 @@ extern "C" void remove_temporaries(int signal) {
   for (const auto& name : open_temporaries) {
     if (const char* file = name.load()) unlink(file);
   }
+  if (const LastLine* const line = last_line.exchange(nullptr); line && (!line->may_say || line->may_say())) {
+    static_cast<void>(!write(STDERR_FILENO, line->text.data(), line->text.size()));  // nothing can be done about it
+  }
   std::signal(signal, SIG_DFL);
   raise(signal);
 }
@@ -73,6 +84,13 @@ void remove_temporaries_at_signals() {
     if (std::signal(signal, remove_temporaries) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow further is an error of writing, as a full disk is
+}
+
+void say_at_signals(std::string line, bool (*may_say)()) {
+  LastLine& next = last_lines[last_line == &last_lines[0] ? 1 : 0];
+  if (!line.empty()) line += '\n';
+  next = {std::move(line), may_say};
+  last_line = next.text.empty() ? nullptr : &next;
 }
 
 std::filesystem::path past_dangling_links(const std::filesystem::path& path) {

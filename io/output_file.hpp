@@ -39,6 +39,9 @@ struct FilePlace {
 /// when the process is told to stop (SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU) or nobody reads its standard output any
 /// more (SIGPIPE); a file that grows beyond a limit (SIGXFSZ, ignored) is an error like any other.
 void remove_temporaries_at_signals();
+/// From now on such a signal also writes this line to standard error, if it is not empty and `may_say`, if there is
+/// one, returns true: it is called by the signal handler.
+void say_at_signals(std::string line, bool (*may_say)() = nullptr);
 
 /// Writes to a temporary file beside the one that `path` leads to; commit() renames it, and until then nothing is
 /// there, or what was there before. Destroyed without commit(), the temporary file is removed. "-" is standard output;

@@ -33,6 +33,9 @@ class AdaptiveBroadPhase final : public BroadPhase<Degree> {
   bool exact() const override { return false; }
   std::string_view name() const override { return chosen().name(); }
   void reserve(BodySlot end) override;
+  void fit() override {
+    if (grid_) grid_->fit();
+  }
   void expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) override;
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;

@@ -108,6 +108,10 @@ class BoxGrid {
     items_.reserve(end);
     if (end > natives_.room()) restart(end);
   }
+  /// Gives back the memory of cells if there are far fewer boxes than there were. O(n).
+  void fit() {
+    if (natives_.room() > 4 * size_) restart(2 * size_);
+  }
   /// Chooses the smallest cells by the spacing of boxes. Precondition: empty. Later the grid chooses by itself.
   void choose_cells(double spacing);
 

@@ -79,6 +79,9 @@ class BroadPhase {
   /// A hint: there will be bodies in all slots below `end`. Changes nothing that can be observed; what this makes room
   /// for then needs no time when bodies are inserted.
   virtual void reserve(BodySlot /*end*/) {}
+  /// A hint: there are far fewer bodies than there were. Gives back memory that these do not need, and changes nothing
+  /// that can be observed.
+  virtual void fit() {}
   /// A hint: so many bodies, of slots below `end`, will be inserted soon, in parts; these are some of them. Changes
   /// nothing that can be observed.
   virtual void expect(std::size_t /*bodies*/, BodySlot /*end*/, std::span<const Entry> /*some*/, double /*now*/) {}

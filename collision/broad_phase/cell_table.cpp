@@ -16,6 +16,9 @@ void CellTable::Found::grow(std::size_t count) {
 
 void CellTable::restart(std::size_t numbers) {
   const std::size_t buckets = std::bit_ceil(std::max<std::size_t>(numbers, 64));
+  // With much less memory than before, the rest is given back.
+  if (buckets_.capacity() > 2 * buckets) LargeVector<Bucket>().swap(buckets_);
+  if (chained_.capacity() > buckets) LargeVector<Bucket>().swap(chained_);
   buckets_.assign(buckets, Bucket{});
   chained_.clear();
   free_ = none;

@@ -19,10 +19,10 @@ template <int Degree>
 inline void KineticGrid<Degree>::report_pair(BodySlot a, BodySlot b, double now, PairListener& listener) {
   Body& first = bodies_[a];
   Body& second = bodies_[b];
-  ++first.partners;
-  ++second.partners;
-  ++first.begun;
-  ++(second.speed >= much_slower * first.speed ? second.begun : second.in_vain);
+  first.add_partner();
+  second.add_partner();
+  count_one(first.begun);
+  count_one(second.speed >= much_slower * first.speed ? second.begun : second.in_vain);
   listener.pair_began(std::min(a, b), std::max(a, b), now);
 }
 
@@ -35,13 +35,13 @@ void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double 
   const bool filters = listener.filters();
   for (const BodySlot other : changes.ended) {
     if (filters && !listener.may_collide(id, other)) continue;
-    --bodies_[id].partners;
-    --bodies_[other].partners;
+    bodies_[id].drop_partner();
+    bodies_[other].drop_partner();
     listener.pair_ended(std::min(id, other), std::max(id, other), now);
   }
   for (const BodySlot other : changes.began) {
     if (filters && !listener.may_collide(id, other)) {
-      ++bodies_[id].in_vain;
+      count_one(bodies_[id].in_vain);
       Filter& filter = filters_[bodies_[id].filter];
       if (bodies_[other].filter != bodies_[id].filter || filter.kind != 0) continue;
       ++filter.in_vain;
@@ -55,7 +55,6 @@ void KineticGrid<Degree>::report(BodySlot id, BoxGrid::Changes& changes, double 
 /// An earlier entry stays in the queue: most boxes are replaced again before it is due.
 template <int Degree>
 void KineticGrid<Degree>::set_expiry(BodySlot id, double expiry, double now) {
-  bodies_[id].expiry = expiry;
   if (expiry_.contains(id) && expiry_.time(id) > now && expiry_.time(id) <= expiry) return;
   expiry_.set(id, expiry <= horizon_ ? expiry : never);
 }
@@ -97,6 +96,7 @@ bool KineticGrid<Degree>::renew(BodySlot id, const KineticBox<Degree>& kinetic, 
   Body& body = bodies_[id];
   ++filters_[body.filter].boxes;
   const FatBox fat = fat_box(id, kinetic, sweep, present, now);
+  body.begin_life(fat.expiry, now);
   set_expiry(id, fat.expiry, now);
   BoxGrid::Changes changes;
   const std::optional<BoxSlant> part = slant(body, kinetic, present);
@@ -126,13 +126,16 @@ void KineticGrid<Degree>::update(BodySlot id, const KineticBox<Degree>& box, dou
   Body& body = bodies_[id];
   const bool less_rounded = kept_rounding(box.rounding) < fat_boxes_.rounding(id);  // than the old fat box
   body.changed = true;
-  body.tests += body.partners;
+  add_up_to_most(body.tests, body.partners);
   // The old fat box often remains valid for a while.
   const BoxSweep<Degree> sweep(box, now);
   const StaticBox present = sweep.begin();
   if (!less_rounded) {
     const double expiry = kept_until(id, box, sweep, present, now);
-    if (expiry > now) return set_expiry(id, expiry, now);
+    if (expiry > now) {
+      body.begin_life(expiry, now - body.age(now));
+      return set_expiry(id, expiry, now);
+    }
   }
   adapt_travel(id, now);
   renew(id, box, sweep, present, now, listener);

@@ -4,6 +4,7 @@
 #include "collision/broad_phase/box_grid.hpp"
 #include "collision/broad_phase/box_of.hpp"
 #include "collision/broad_phase/broad_phase.hpp"
+#include "collision/broad_phase/coarse_number.hpp"
 #include "collision/broad_phase/tuning.hpp"
 #include "collision/degrees.hpp"
 #include "kds/events/calendar_queue.hpp"
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -38,7 +40,7 @@ namespace kds::collision {
 /// The kinetic boxes themselves are not stored: when a fat box is renewed, the owner of the bodies is asked.
 ///
 /// Cost: O(1) a renewal or motion change, for bodies of bounded density, and a queue operation; nothing in between.
-/// Memory: a cache line a body, and that of the fat boxes and of the queue.
+/// Memory: 32 bytes a body, and that of the fat boxes and of the queue.
 template <int Degree>
 class KineticGrid final : public BroadPhase<Degree> {
  public:
@@ -53,6 +55,10 @@ class KineticGrid final : public BroadPhase<Degree> {
   bool exact() const override { return false; }
   std::string_view name() const override { return "grid"; }
   void reserve(BodySlot end) override;
+  void fit() override {
+    expiry_.fit();
+    fat_boxes_.fit();
+  }
   void expect(std::size_t bodies, BodySlot end, std::span<const Entry> some, double now) override;
   void insert(std::span<const Entry> bodies, double now, PairListener& listener) override;
   void remove(BodySlot id, double now, PairListener& listener) override;
@@ -91,33 +97,48 @@ class KineticGrid final : public BroadPhase<Degree> {
   /// A box with this travel on both sides still has a finite extent.
   static constexpr double greatest_travel = 0x1p1020;
 
-  struct alignas(64) Body {
+  /// Two in a cache line. What decides costs only is coarse, or counted up to a most.
+  struct alignas(32) Body {
     Body() {}  // the implicit one would set all to zero first
 
     /// Resets it to the state of a new body.
-    void begin(double its_travel, double now) {
-      entered = now;
+    void begin(double its_travel) {
       travel = its_travel;
       expiry = never;
-      begun = in_vain = partners = tests = 0;
-      jostled = 0;
+      speed = way = life = 0;
+      partners = tests = 0;
+      begun = in_vain = jostled = 0;
       changed = false;
     }
 
-    double entered = 0;
-    double travel = 0;           ///< how far it may move in its fat box
-    double fattened = 0;         ///< when its fat box was made
-    double expiry = never;       ///< until when it is valid
-    double speed = 0;            ///< when its fat box was made
-    std::uint32_t begun = 0;     ///< pairs since its last renewal
-    std::uint32_t in_vain = 0;   ///< pairs found since then whose bodies may not collide
-    std::uint32_t partners = 0;  ///< bodies with which it forms pairs
-    std::uint32_t tests = 0;     ///< of its pairs for changes of its motion since its last renewal
-    int jostled = 0;             ///< boxes in which its motion changed minus those in which it did not, bounded
-    std::uint8_t filter = 0;     ///< index in filters_
-    bool changed = false;        ///< whether its motion has changed since its last renewal
+    /// Its fat box, which was made at `now`, is valid until then.
+    void begin_life(double until, double now) {
+      expiry = until;
+      life = until == never ? 0 : until - now;
+    }
+    /// For how long it has had its fat box; 0 if that is valid for ever.
+    double age(double now) const { return expiry == never ? 0 : life - (expiry - now); }
+    double way_until(double now) const { return way + speed * age(now); }
+
+    void add_partner() { count_one(partners); }
+    void drop_partner() { partners = static_cast<std::uint16_t>(partners - (partners < many_partners ? 1 : 0)); }
+
+    double expiry = never;       ///< until when its fat box is valid
+    CoarseNumber life;           ///< s, for which its fat box is valid; 0 if that is for ever
+    CoarseNumber travel;         ///< how far it may move in its fat box
+    CoarseNumber speed;          ///< when its fat box was made
+    CoarseNumber way;            ///< how far it had moved by then since it was added, about
+    std::uint16_t partners = 0;  ///< bodies with which it forms pairs; once there are many_partners that is not counted
+    std::uint16_t tests = 0;     ///< of its pairs for changes of its motion since its last renewal
+    std::uint8_t begun = 0;      ///< pairs since its last renewal
+    std::uint8_t in_vain = 0;    ///< pairs found since then whose bodies may not collide
+    std::int8_t jostled = 0;     ///< boxes in which its motion changed minus those in which it did not, bounded
+    std::uint8_t filter : 7 = 0;  ///< index in filters_
+    bool changed : 1 = false;     ///< whether its motion has changed since its last renewal
+
+    static constexpr std::uint16_t many_partners = std::numeric_limits<std::uint16_t>::max();
   };
-  static_assert(sizeof(Body) == 64);
+  static_assert(sizeof(Body) == 32);
   /// Bodies with the same filter, and what is known of them.
   struct Filter {
     std::uint64_t number = 0;

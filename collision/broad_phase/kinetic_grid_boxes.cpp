@@ -53,16 +53,16 @@ template <class Sweep, class MayBegin>
 inline auto KineticGrid<Degree>::fat_box(Body& body, const KineticBox<Degree>& kinetic, const Sweep& sweep,
                                          const StaticBox& present, double now, double coarsest,
                                          MayBegin&& may_begin) const -> FatBox {
-  body.fattened = now;
+  body.way = body.way_until(now);
   const double size = present.extent();
   const double coordinates = present.min.abs().max(present.max.abs()).maxCoeff();
   body.travel = std::max(
-      {body.travel, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
+      {double{body.travel}, tuning_.least_travel * size, least_part_of_coordinates * coordinates, least_travel_at_all});
   double time = lifetime(body.travel, kinetic, sweep);
   body.speed = body.travel / time;
   if (time == never) return {present, never};
   // A jostled body may go anywhere next; a margin larger than its size would mostly be in vain.
-  double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? body.travel : 0;
+  double margin = body.jostled >= tuning_.jostled_at && body.travel <= 0.5 * size ? double{body.travel} : 0;
   Eigen::Array3d ahead = Eigen::Array3d::Zero();  // over the margin
   if (margin > 0) {
     ahead = tuning_.lead / sweep.speed() * kinetic.min.coefficients[1].array();
@@ -123,7 +123,7 @@ std::uint32_t KineticGrid<Degree>::fit(Body& body, const KineticBox<Degree>& kin
   const auto fit = [&](const auto& sweep) __attribute__((always_inline)) {
     const FatBox fat = fat_box(body, kinetic, sweep, sweep.begin(), now, coarsest, [] { return false; });
     box = fat.box;
-    body.expiry = fat.expiry;
+    body.begin_life(fat.expiry, now);
     return fat.certificates;
   };
   if constexpr (Degree == 1) {
@@ -156,20 +156,20 @@ template <int Degree>
 void KineticGrid<Degree>::adapt_travel(BodySlot id, double now) {
   Body& body = bodies_[id];
   const bool lasted = body.expiry <= now;
-  body.begun += body.in_vain / tuning_.found_per_pair;
+  add_up_to_most(body.begun, body.in_vain / tuning_.found_per_pair);
   if (body.jostled >= tuning_.jostled_at) {
     const std::uint32_t spent = tuning_.tests_per_pair * body.begun + body.tests;
     if (spent < tuning_.little_spent) body.travel = std::min(tuning_.grow_jostled * body.travel, greatest_travel);
     if (spent > tuning_.much_spent) body.travel *= tuning_.shrink_jostled;
   } else if (lasted) {
     body.travel = std::min(travel_factor(body.begun) * body.travel, greatest_travel);
-  } else if (now - body.fattened < 0.5 * (body.expiry - body.fattened)) {
+  } else if (body.expiry - now > 0.5 * body.life) {
     body.travel *= tuning_.shrink_after_turn;
   }
   if (Degree == 1 && body.changed) {
-    body.jostled = std::min(body.jostled + 1, tuning_.jostled_most);
+    body.jostled = static_cast<std::int8_t>(std::min(body.jostled + 1, tuning_.jostled_most));
   } else {
-    body.jostled = std::max(body.jostled - 2, 0);
+    body.jostled = static_cast<std::int8_t>(std::max(body.jostled - 2, 0));
   }
   body.begun = body.in_vain = 0;
   body.changed = false;

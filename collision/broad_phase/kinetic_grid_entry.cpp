@@ -111,7 +111,7 @@ void KineticGrid<Degree>::insert(std::span<const Entry> bodies, double now, Pair
   for (const Entry& entry : bodies) {
     join_filter(entry.slot, listener);
     const double travel = filters_[bodies_[entry.slot].filter].travel;
-    bodies_[entry.slot].begin(travel > 0 ? travel : first_travel_, now);
+    bodies_[entry.slot].begin(travel > 0 ? travel : first_travel_);
     const BoxSweep<Degree> sweep(*entry.box, now);
     renew(entry.slot, *entry.box, sweep, sweep.begin(), now, listener);
   }
@@ -168,7 +168,7 @@ void KineticGrid<Degree>::make_boxes(std::span<const Entry> bodies, std::span<St
     std::uint64_t tries = 0;
     for (std::size_t i = first; i < last; ++i) {
       Body& body = bodies_[bodies[i].slot];
-      body.begin(first_travel_, now);
+      body.begin(first_travel_);
       tries += fit(body, *bodies[i].box, boxes[i], now, std::numeric_limits<double>::max());
     }
     certificates[part] = tries;

@@ -23,7 +23,7 @@ void KineticGrid<Degree>::join_filter(BodySlot id, const PairListener& listener)
   }
   Filter& filter = filters_[i];
   ++filter.bodies;
-  bodies_[id].filter = static_cast<std::uint8_t>(i);
+  bodies_[id].filter = static_cast<std::uint8_t>(i) & 0x7f;
   fat_boxes_.set_kind(id, filter.kind);
 }
 
@@ -37,7 +37,7 @@ void KineticGrid<Degree>::leave_filter(BodySlot id, double now) {
   if (body.expiry == never) return;
   constexpr double part = 0.125;  // of a body in the mean of those before
   constexpr double ways = 2;      // so that few lives need a second box
-  const double way = body.speed * (now - body.entered);
+  const double way = body.way_until(now);
   const double travel = std::min({body.travel * travel_factor(body.begun), ways * way, greatest_travel});
   if (travel > 0) filter.travel += (filter.travel > 0 ? part : 1) * (travel - filter.travel);
 }

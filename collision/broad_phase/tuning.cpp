@@ -49,7 +49,7 @@ void check(const GridTuning& tuning) {
   require_part(tuning.kept_share_curved, "GridTuning.kept_share_curved");
   require_cost(tuning.share_for_level, "GridTuning.share_for_level");
   require(tuning.jostled_at > 0, "GridTuning.jostled_at", "> 0");
-  require(tuning.jostled_most >= 0 && tuning.jostled_most < 1 << 20, "GridTuning.jostled_most", "in 0 ... 2^20 - 1");
+  require(tuning.jostled_most >= 0 && tuning.jostled_most <= 100, "GridTuning.jostled_most", "in 0 ... 100");
   require_cost(tuning.tests_per_pair, "GridTuning.tests_per_pair");
   require_growth(tuning.grow_jostled, "GridTuning.grow_jostled");
   require_part(tuning.shrink_jostled, "GridTuning.shrink_jostled");

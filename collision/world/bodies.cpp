@@ -66,7 +66,7 @@ BodySlot Bodies<Motion>::add(const Description& description, std::shared_ptr<con
   keys_.give(slot);
   Body& added = bodies_[slot];
   added.bounding_radius = shape ? shape->bounding_radius : ball;
-  added.shape = std::move(shape);
+  keep_shape(slot, std::move(shape));
   added.mass = description.mass;
   added.inverse_mass = description.fixed ? 0 : 1 / description.mass;
   if constexpr (turns<Motion>) {
@@ -96,8 +96,9 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
   bodies_[slot] = from.bodies_[of];
   movers_[slot] = from.movers_[of];
   if constexpr (turns<Motion>) motions_[slot] = from.motions_[of];
-  bodies_[slot].entered = false, bodies_[slot].waits_at = 0;
-  filters_ = filters_ || filter(slot) != CollisionFilter{};
+  bodies_[slot].entered = false;
+  keep_shape(slot, from.kept_shape(of));
+  set_filter(slot, from.filter(of));
   sensors_ = sensors_ || bodies_[slot].sensor;
   ++alive_;
   keys_.set_number(slot, from.number(of));
@@ -107,8 +108,18 @@ BodySlot Bodies<Motion>::take_in(const Bodies& from, BodySlot of) {
 
 template <class Motion>
 void Bodies<Motion>::set_filter(BodySlot slot, const CollisionFilter& filter) {
-  bodies_[slot].filter = filter;
-  filters_ = filters_ || filter != CollisionFilter{};
+  if (filter == this->filter(slot)) return;
+  if (filter_.size() <= slot) filter_.resize(bodies_.size());
+  filter_[slot] = filter;
+  filters_ = true;
+}
+
+template <class Motion>
+void Bodies<Motion>::keep_shape(BodySlot slot, std::shared_ptr<const PlacedShape> shape) {
+  bodies_[slot].shape = shape.get();
+  if (!shape && shapes_.size() <= slot) return;
+  if (shapes_.size() <= slot) shapes_.resize(bodies_.size());
+  shapes_[slot] = std::move(shape);
 }
 
 template <class Motion>
@@ -137,6 +148,8 @@ void Bodies<Motion>::set_mass(BodySlot slot, double mass) {
 template <class Motion>
 void Bodies<Motion>::remove(BodySlot slot) {
   if (waits(slot)) wait_no_more(slot);
+  keep_shape(slot, nullptr);
+  set_filter(slot, {});
   bodies_[slot] = Body{};
   ignored_.forget(slot);
   attachments_.detach(slot);
@@ -155,14 +168,15 @@ void Bodies<Motion>::reserve(std::size_t bodies) {
 template <class Motion>
 void Bodies<Motion>::wait(BodySlot slot) {
   waiting_.push_back(slot);
-  bodies_[slot].waits_at = static_cast<std::uint32_t>(waiting_.size());
+  if (waits_at_.size() <= slot) waits_at_.resize(bodies_.size());
+  waits_at_[slot] = static_cast<std::uint32_t>(waiting_.size());
   ++waits_;
 }
 
 /// The next body in this slot must not enter in its place, which stays empty until half of all places are.
 template <class Motion>
 void Bodies<Motion>::wait_no_more(BodySlot slot) {
-  waiting_[std::exchange(bodies_[slot].waits_at, 0) - 1] = no_body;
+  waiting_[std::exchange(waits_at_[slot], 0) - 1] = no_body;
   if (2 * --waits_ >= waiting_.size() - taken_) return;
   const std::vector<BodySlot> places = std::exchange(waiting_, {});
   const std::size_t first = std::exchange(taken_, 0);
@@ -180,11 +194,12 @@ std::vector<BodySlot> Bodies<Motion>::take_waiting(std::size_t most) {
     const BodySlot slot = waiting_[taken_++];
     if (slot == no_body) continue;
     taken.push_back(slot);
-    bodies_[slot].waits_at = 0;
+    waits_at_[slot] = 0;
     --waits_;
   }
   if (!any_waits()) {
     std::vector<BodySlot>().swap(waiting_);
+    LargeVector<std::uint32_t>().swap(waits_at_);
     taken_ = 0;
   }
   return taken;
@@ -207,7 +222,7 @@ static void copy_properties(const From& from, To& to) {
   to.mass = from.mass, to.inverse_mass = from.inverse_mass, to.restitution = from.restitution;
   to.volume = from.volume, to.sensor = from.sensor, to.self_contacts = from.self_contacts;
   to.user_data = from.user_data;
-  to.meetings = from.meetings, to.burst_start = from.burst_start;
+  to.meetings = static_cast<std::uint32_t>(from.meetings), to.burst_start = from.burst_start;
   if constexpr (turns<Motion>) {
     to.inverse_inertia = from.inverse_inertia;
     to.friction = from.friction, to.tangential_restitution = from.tangential_restitution;
@@ -229,7 +244,7 @@ void Bodies<Motion>::describe(BodySlot slot, One& one, const std::vector<std::sh
   }
   one.motion = motion(slot);
   copy_properties<Motion>(b, one);
-  one.filter = b.filter;
+  one.filter = filter(slot);
   if constexpr (Motion::degree <= 2) one.force = free_acceleration(slot);
 }
 
@@ -285,6 +300,9 @@ void Bodies<Motion>::lend() {
   LargeVector<Mover>().swap(movers_);
   LargeVector<Motion>().swap(motions_);
   LargeVector<Body>().swap(bodies_);
+  LargeVector<std::shared_ptr<const PlacedShape>>().swap(shapes_);
+  LargeVector<CollisionFilter>().swap(filter_);
+  LargeVector<std::uint32_t>().swap(waits_at_);
   std::vector<BodySlot>().swap(waiting_);
   taken_ = waits_ = 0;
 }
@@ -314,7 +332,9 @@ void Bodies<Motion>::set_shape(BodySlot slot, PlacedShape placed) {
   const double ball = ball_radius(placed.shape);
   b.bounding_radius = placed.bounding_radius;
   movers_[slot].radius = ball > 0 ? ball : Mover::no_radius;
-  if (!(ball > 0) || !placed.rotation.isIdentity(0)) b.shape = std::make_shared<const PlacedShape>(std::move(placed));
+  if (!(ball > 0) || !placed.rotation.isIdentity(0)) {
+    keep_shape(slot, std::make_shared<const PlacedShape>(std::move(placed)));
+  }
 }
 
 template <class Motion>
@@ -322,7 +342,7 @@ void Bodies<Motion>::become(const Image& image) {
   keys_.become(image.generations, image.next_id);
   free_ = image.free;
   const std::size_t count = image.bodies.size();
-  bodies_.clear(), movers_.clear();
+  bodies_.clear(), movers_.clear(), shapes_.clear(), filter_.clear(), waits_at_.clear();
   bodies_.resize(count), movers_.resize(count);
   if constexpr (turns<Motion>) motions_.resize(count);
   lent_ = image.elsewhere.slots, alive_ = image.elsewhere.bodies;

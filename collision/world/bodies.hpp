@@ -69,7 +69,9 @@ struct Turns {
 };
 struct TurnsNot {};
 
-/// A body without its motion and its radius, which the tests of balls read and which are stored separately.
+/// A body without its motion and its radius, which the tests of balls read and which are stored separately. Where it
+/// does not turn, and its motion is a line, it fits into one cache line; so what few bodies have, or have for a short
+/// time, is in arrays of its own.
 template <class Motion>
 struct Body
     : std::conditional_t<Motion::degree >= 3, Course<Motion>, std::conditional_t<Motion::degree == 2, Force, NoForce>>,
@@ -80,18 +82,15 @@ struct Body
   double restitution = 1;
   double mass = 1;
   double bounding_radius = 0;
-  CollisionFilter filter{};
-  BoundingVolume volume = BoundingVolume::shape;
-  bool sensor = false;
-  bool self_contacts = false;
   std::uint64_t user_data = 0;
-  bool alive = false;
-  bool entered = false;  ///< its motion has begun; it is in the broad phase, if it collides with anything
-  /// If its motion has begun and it is about to enter, one more than its place among those that wait; else 0.
-  std::uint32_t waits_at = 0;
-  std::uint64_t meetings = 0;  ///< contacts since burst_start (ZenoPolicy)
   double burst_start = -never;
-  std::shared_ptr<const PlacedShape> shape;  ///< null if it is placed_ball(bounding_radius)
+  const PlacedShape* shape = nullptr;  ///< null if it is placed_ball(bounding_radius); see Bodies::kept_shape()
+  std::uint32_t meetings = 0;          ///< contacts since burst_start (ZenoPolicy)
+  BoundingVolume volume = BoundingVolume::shape;
+  bool sensor : 1 = false;
+  bool self_contacts : 1 = false;
+  bool alive : 1 = false;
+  bool entered : 1 = false;  ///< its motion has begun; it is in the broad phase, if it collides with anything
 };
 
 /// A body for the narrow phase; the shape of a ball is made on demand.
@@ -156,6 +155,10 @@ class Bodies {
   PlacedShape shape(BodySlot slot) const { return moving(slot).shape; }
   /// Whether the body is fixed: no other body changes its motion.
   bool fixed(BodySlot slot) const { return bodies_[slot].inverse_mass == 0; }
+  /// The shape of a body that is not a ball without rotation, else null; as long as it is kept it stays as it is.
+  std::shared_ptr<const PlacedShape> kept_shape(BodySlot slot) const {
+    return slot < shapes_.size() ? shapes_[slot] : nullptr;
+  }
   /// Whether the body is a mesh that bends.
   bool bends(BodySlot slot) const { return bodies_[slot].shape && collision::bends(bodies_[slot].shape->shape); }
   /// Counts a meeting of the body at `now`: returns how many it has had within `interval` seconds.
@@ -216,7 +219,10 @@ class Bodies {
   bool in_broad_phase(BodySlot slot) const { return collides(slot) && !unbounded(slot); }
   /// Its bounding radius; 0 of one that has none.
   double finite_radius(BodySlot slot) const { return unbounded(slot) ? 0 : bodies_[slot].bounding_radius; }
-  const CollisionFilter& filter(BodySlot slot) const { return bodies_[slot].filter; }
+  const CollisionFilter& filter(BodySlot slot) const {
+    static constexpr CollisionFilter meets_all;
+    return slot < filter_.size() ? filter_[slot] : meets_all;
+  }
   bool may_collide(BodySlot a, BodySlot b) const {
     return filter(a).meets(filter(b)) && !(!ignored_.empty() && ignored_.contains(a, b)) &&
            !(!attachments_.empty() && attachments_.together(a, b));
@@ -239,7 +245,7 @@ class Bodies {
   /// A body's motion begins now: it waits to enter.
   void wait(BodySlot slot);
   bool any_waits() const { return waits_ > 0; }
-  bool waits(BodySlot slot) const { return bodies_[slot].waits_at != 0; }
+  bool waits(BodySlot slot) const { return slot < waits_at_.size() && waits_at_[slot] != 0; }
   /// How many wait.
   std::size_t waits() const { return waits_; }
   /// Those that have waited longest come first. In the place of one that was removed is no_body.
@@ -292,6 +298,7 @@ class Bodies {
   [[noreturn]] void refuse(BodyId id) const;
   BodySlot new_slot();
   void wait_no_more(BodySlot slot);
+  void keep_shape(BodySlot slot, std::shared_ptr<const PlacedShape> shape);
   template <class One>
   void describe(BodySlot slot, One& one, const std::vector<std::shared_ptr<const Mesh>>& meshes) const;
   template <class One>
@@ -300,6 +307,11 @@ class Bodies {
   LargeVector<Mover> movers_;
   LargeVector<Motion> motions_;  ///< by slot, where bodies turn
   LargeVector<Body> bodies_;
+  // By slot, up to the last that has had another value than most.
+  LargeVector<std::shared_ptr<const PlacedShape>> shapes_;
+  LargeVector<CollisionFilter> filter_;
+  /// Of a body whose motion has begun and that is about to enter, one more than its place in waiting_; else 0.
+  LargeVector<std::uint32_t> waits_at_;
   BodyKeys keys_;
   std::vector<BodySlot> free_;
   std::vector<BodySlot> waiting_;  ///< and before them those that have been taken, taken_ of them

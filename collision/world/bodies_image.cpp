@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <set>
 #include <span>
 #include <stdexcept>
@@ -178,6 +180,7 @@ void Bodies<Motion>::Image::check(double now) const {
     need(has_mass || body.inverse_mass == 0, "its mass is not > 0, or not that of its inverse");
     need(body.restitution >= 0 && body.restitution <= 1, "its restitution is not in [0, 1]");
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
+    need(body.meetings <= std::numeric_limits<std::uint32_t>::max(), "it has met too many others");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
     need(body.force.allFinite(), "its acceleration is not finite");
     need(std::isfinite(body.inverse_inertia) && body.inverse_inertia >= 0, "its inertia is not > 0");

@@ -56,7 +56,7 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
     return calls_.tell([&](auto& listener, auto& world) { listener.contact(world, event); });
   }
   const auto state = [&] {
-    return std::tuple(bodies_.motion(a), bodies_.motion(b), bodies_[a].shape, bodies_[b].shape);
+    return std::tuple(bodies_.motion(a), bodies_.motion(b), bodies_.kept_shape(a), bodies_.kept_shape(b));
   };
   const auto before = bending_.bend(a, b) ? std::optional(state()) : std::nullopt;
   const bool elastic = options_.response == Response::elastic;

@@ -58,6 +58,7 @@ Engine<Motion>::Engine(BasicWorld<Motion>& world, const WorldOptions& options, L
 template <class Motion>
 bool Engine<Motion>::step(double limit) {
   guard_.require_idle("World::step");
+  membership_.fit();
   if (limit == never && callers_.idle_for_ever) return false;
   if (limit < callers_.idle_until) {
     callers_.now = std::max(callers_.now, limit);

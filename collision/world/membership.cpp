@@ -138,6 +138,16 @@ void Membership<Motion>::take_out(BodySlot slot) {
   bodies_.remove(slot);
 }
 
+/// Room that callers have asked for stays theirs.
+template <class Motion>
+void Membership<Motion>::fit_to_rest() {
+  most_ = bodies_.size();
+  if (parts_.reserved > 0) return;
+  pairs_.fit();
+  walls_.fit();
+  broad_phase_->fit();
+}
+
 template <class Motion>
 void Membership<Motion>::take_out_with_sensors(BodySlot slot) {
   while (!bodies_.attachments().sensors(slot).empty()) take_out(bodies_.attachments().sensors(slot).front());

@@ -41,6 +41,8 @@ class WallTimes {
     if (slot < times_.slots()) times_.prefetch(slot);
   }
   void reserve(std::size_t bodies);
+  /// Gives back memory that fewer bodies do not need.
+  void fit() { times_.fit(); }
 
   /// A time up to which no body reaches a wall.
   double next_time() const { return times_.empty() ? never : times_.top().time; }

@@ -1,12 +1,13 @@
 #include "examples/kds-collide/tool.hpp"
 
-#include "collision/broad_phase/broad_phase_kind.hpp"
 #include "examples/kds-collide/arguments.hpp"
 #include "examples/kds-collide/progress_bar.hpp"
+#include "examples/kds-collide/tasks.hpp"
 #include "io/checkpoint.hpp"
 #include "io/event_csv.hpp"
 #include "io/event_parts.hpp"
 #include "io/gltf.hpp"
+#include "io/number_text.hpp"
 #include "io/one_line.hpp"
 #include "io/output_file.hpp"
 #include "io/replay.hpp"
@@ -17,7 +18,6 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -25,7 +25,7 @@
 #include <cstdio>
 #include <ctime>
 #include <filesystem>
-#include <list>
+#include <functional>
 #include <optional>
 #include <random>
 #include <string>
@@ -37,62 +37,6 @@ namespace kds_collide {
 namespace {
 
 using namespace kds::io;
-
-void list_broad_phases() {
-  OutputFile out("-");
-  for (const auto& b : kds::collision::broad_phases) {
-    std::string line(b.name);
-    line.resize(std::max<std::size_t>(line.size(), 12), ' ');
-    out.write(line + ' ' + std::string(b.what) + '\n');
-  }
-  out.commit();
-}
-
-void generate(const Arguments& arguments) {
-  const std::filesystem::path file = arguments.output.empty() ? arguments.generator.kind + ".json" : arguments.output;
-  GeneratorOptions options = arguments.generator;
-  if (arguments.table) options.table = std::filesystem::path(file).replace_extension(".h5").filename().string();
-  if (arguments.table && options.table == file.filename())
-    throw ArgumentError("--output: is the name of the table too");
-  GeneratedScene scene;
-  try {
-    scene = generate_scene(options);
-  } catch (const std::invalid_argument& error) {
-    throw ArgumentError(error.what());
-  }
-  std::list<OutputFile> outputs;
-  const auto write = [&outputs](const std::filesystem::path& path, const std::string& text) {
-    OutputFile& output = outputs.emplace_back(path.string());
-    output.write(text);
-    output.close();
-  };
-  for (const auto& mesh : scene.meshes) {
-    if (file.filename() == mesh.name) throw ArgumentError("--output: is the name of the mesh " + mesh.name + " too");
-  }
-  // Meshes and the table first: the scene is there only when all it names is.
-  for (const auto& mesh : scene.meshes) write(file.parent_path() / mesh.name, mesh.text);
-  if (arguments.table) write(file.parent_path() / options.table, scene.table);
-  write(file, scene.json);
-  for (OutputFile& output : outputs) output.commit();
-  if (!arguments.quiet) {
-    std::fprintf(stderr, "%s: %zu %s, density %g, seed %llu\n", file.c_str(), arguments.generator.bodies,
-                 arguments.generator.kind.c_str(), arguments.generator.density,
-                 static_cast<unsigned long long>(arguments.generator.seed));
-  }
-}
-
-/// Makes one log of the events of all processes.
-void merge(const Arguments& arguments) {
-  const Scene scene = read_scene(arguments.scene, arguments.until);
-  check(arguments, scene);
-  EventParts parts(arguments.merge, fingerprint(scene), scene.bodies.size());
-  OutputFile output(arguments.events);
-  // Each has a step in memory: more than can run at once would take memory for nothing.
-  const std::size_t most = std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t threads = arguments.run.threads > 0 ? std::min(arguments.run.threads, most) : most;
-  merge_as_csv(parts, scene, threads, [&](std::string_view lines) { output.write(lines); });
-  output.commit();
-}
 
 void print_summary(const RunResult& result) {
   std::fprintf(stderr,
@@ -163,7 +107,17 @@ class Simulation {
     checkpoints_.emplace(arguments_.checkpoint, team_, turn);
   }
 
-  void run() {
+  /// What to do when the run ends early.
+  std::string way_on() const {
+    if (arguments_.checkpoint.empty()) return "there is no checkpoint to go on from: --checkpoint makes some";
+    if (!saved_) return "there is no checkpoint yet to go on from";
+    return "--resume goes on from " + arguments_.checkpoint + ", at " + about(*saved_) + " s";
+  }
+
+  /// `tell_way_on`: is given it at once, and whenever it has changed.
+  void run(std::function<void()> tell_way_on) {
+    tell_way_on_ = std::move(tell_way_on);
+    tell_way_on_();
     result_ = kds::io::run(scene_, arguments_.run, sinks_);
     progress_.reset();
   }
@@ -208,6 +162,7 @@ class Simulation {
     require_same_scene(scene_, arguments_.scene, checkpoint_);
     check_resume(arguments_, scene_, checkpoint_);
     arguments_.run.resume = &checkpoint_.world;
+    saved_ = checkpoint_.time;
     if (checkpoint_.bodies.empty()) return;
     bodies_.emplace(arguments_.checkpoint, checkpoint_, team_.rank(), team_.count()).check();
     arguments_.run.resume_bodies = [this](std::vector<char>& block) { return bodies_->read(block); };
@@ -224,6 +179,8 @@ class Simulation {
                             .events = events_ ? std::optional(events_->flush()) : std::nullopt,
                             .parts = parts_ ? parts_->places() : std::vector<FilePlace>(),
                             .world = world});
+      saved_ = time;
+      tell_way_on_();
     };
   }
 
@@ -246,6 +203,8 @@ class Simulation {
   Checkpoint checkpoint_;  ///< from which the run goes on, if it does; else its run alone counts
   std::optional<CheckpointReader> bodies_;
   std::optional<CheckpointWriter> checkpoints_;
+  std::optional<double> saved_;  ///< s of simulated time: of the last checkpoint that there is
+  std::function<void()> tell_way_on_;
   double read_seconds_ = 0;
   Scene scene_;
   EventSinks sinks_;
@@ -368,16 +327,27 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
     unlock();
     return end_with(failure, is_first);
   }
+  // Of a run that is told to end, or whose processes are, since one of them is lost.
+  std::string way_on;
+  const auto at_signals = [&] {
+    if (!together && arguments.checkpoint.empty()) return;
+    way_on = "; " + simulation->way_on();
+    say_at_signals(one_line(std::string(name) + ": ended by a signal" + way_on),
+                   together ? together->may_say : nullptr);
+  };
   failure = attempt(name, arguments, [&] {
-    simulation->run();
+    simulation->run(at_signals);
+    say_at_signals("");
     simulation->close();
     // All outputs, of all processes, are whole before one appears: none comes here before the others do.
     team.of_first(true);
     simulation->commit();
     unlock();
   });
+  if (failure.code == run_failed) failure.line += way_on;
   if (failure.code != done && team.count() == 1) unlock();
   if (failure.code != done && team.count() > 1) {
+    together->may_say();  // The others, which are told to end, need not say it again.
     failure.line += in_process(team.rank());
     simulation.reset();  // removes temporary files
     // What fails in all processes is said once: process 0 ends the others while they wait.

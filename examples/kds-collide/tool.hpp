@@ -15,6 +15,9 @@ struct Together {
   kds::collision::Processes& processes;
   /// Ends all of them with this code: something has failed in one, and the others wait for it.
   void (*end_all)(int code);
+  /// True in one process of each machine, once: what a signal tells all of them is said there. Called by signal
+  /// handlers.
+  bool (*may_say)();
 };
 
 /// Does what the command line says; returns the code to end with. `name`: of the tool, in messages. Where several

@@ -1,5 +1,5 @@
 // Event queue in buckets of time: a calendar whose days adapt to the events in it. calendar_queue_years.hpp has the
-// turn of its days and years.
+// turn of its days and years, and how it gives memory back.
 #pragma once
 
 #include "kds/events/event_queue.hpp"
@@ -22,7 +22,8 @@ namespace kds {
 /// Each slot that has an event has a record, which is used again when the event is over. So a slot without event takes
 /// four bytes, and slots may be numbered sparsely; a record takes 36 to 52, and its rank, unless that is the slot or
 /// lasts (Rank::lasts, event_queue.hpp). set() allocates where more slots have events than ever before, resize() for
-/// its slots, and set() and top() where more events than ever before are on the present day, which has about one.
+/// its slots, and set() and top() where more events than ever before are on the present day, which has about one; fit()
+/// gives that back.
 ///
 /// A year begins at the earliest event and has a few days for each event; later events wait in an unsorted list, the
 /// years to come. A day is an unsorted, doubly linked list of its records, so that set and clear touch a constant
@@ -46,6 +47,9 @@ class CalendarQueue {
   void set(Slot slot, double time);
   void clear(Slot slot);
   void pop() { clear(top().slot); }
+  /// Gives back the memory of records that no event needs now. Changes nothing else that can be observed. Cost: O(1) a
+  /// record.
+  void fit();
   QueuedEvent top() const;
 
   /// Calls visit(slot) for each event not later than `time`, in no particular order. Unlike top() it rearranges

@@ -1,4 +1,4 @@
-// How a calendar queue goes on to its next day, and to another year.
+// How a calendar queue goes on to its next day and to another year, and how it gives memory back.
 #pragma once
 
 #include "kds/events/calendar_queue.hpp"
@@ -86,6 +86,24 @@ double CalendarQueue<Rank>::day_length(double& earliest) const {
   if (near == end) return 1;  // the sample is all at one time
   const double events = static_cast<double>(near - begin + 1) * static_cast<double>(stride);
   return events_per_day * (*near - earliest) / events;
+}
+
+template <QueueRank Rank>
+void CalendarQueue<Rank>::fit() {
+  CalendarQueue fitted(rank_);
+  fitted.nodes_.reserve(size_), fitted.slots_.reserve(size_);
+  if constexpr (keeps_ranks) fitted.ranks_.reserve(size_);
+  fitted.records_.swap(records_);
+  for (std::uint32_t record = 0; record < nodes_.size(); ++record) {
+    const Slot slot = slots_[record];
+    // A record of no slot; no new record has this number yet.
+    if (fitted.records_[slot] != record) continue;
+    fitted.records_[slot] = none;
+    fitted.set(slot, nodes_[record].time);
+    if constexpr (keeps_ranks) fitted.ranks_[fitted.records_[slot]] = ranks_[record];
+  }
+  fitted.operations_ = operations_;
+  *this = std::move(fitted);
 }
 
 }  // namespace kds

@@ -94,19 +94,34 @@ foreach(with IN ITEMS "${MPIRUN};2;${MPI_TOOL};--domains;3" "${MPIRUN};3;${MPI_T
   endif()
 endforeach()
 
-# The same of a run whose processes are killed while they write or run, again and again.
-# Told to end twice, mpirun would not wait for its processes, hence --foreground.
-execute_process(COMMAND timeout --foreground 2 ${MPIRUN} ${PROCESSES} "${MPI_TOOL}" balls.json --until 4 --domains 4 --events
-  killed.csv --checkpoint killed.state --checkpoint-every 0.02 --quiet WORKING_DIRECTORY "${FOLDER}" OUTPUT_QUIET
-  ERROR_QUIET)
-if(EXISTS "${FOLDER}/killed.csv.unfinished" AND EXISTS "${FOLDER}/killed.state")
-  run(${MPIRUN} 2 "${MPI_TOOL}" balls.json --until 4 --events killed.csv --checkpoint killed.state --checkpoint-every 1.5
-    --resume --quiet)
-  file(SHA256 "${FOLDER}/killed.csv" killed)
-  if(NOT killed STREQUAL one)
-    message(FATAL_ERROR "a run that went on after it was killed has other events: ${FOLDER}/killed.csv")
+# The same of a run of which one process is lost, the first or the last, once there is a checkpoint: MPI ends the
+# others, and one of them says what to go on from.
+function(lose rank file expected)
+  execute_process(COMMAND sh "${CMAKE_CURRENT_LIST_DIR}/lose_a_process.sh" ${rank} "${file}" ${MPIRUN} ${PROCESSES}
+    "${MPI_TOOL}" ${ARGN} WORKING_DIRECTORY "${FOLDER}" RESULT_VARIABLE ended OUTPUT_QUIET ERROR_VARIABLE text)
+  string(REGEX MATCHALL "kds-collide-mpi: [^\n]*" lines "${text}")
+  if(ended EQUAL 0 OR NOT lines MATCHES "^kds-collide-mpi: ended by a signal; ${expected}$")
+    message(FATAL_ERROR "process ${rank} was lost: ended with ${ended}, and said:\n${text}\nnot once: ${expected}")
   endif()
-endif()
+endfunction()
+math(EXPR last "${PROCESSES} - 1")
+set(killed balls.json --until 4 --events killed.csv --checkpoint killed.state)
+foreach(rank IN ITEMS 0 ${last})
+  # Of two checkpoints the first is known to all processes.
+  lose(${rank} killed.state.b.0 "--resume goes on from killed.state, at [0-9.]+ s" ${killed} --domains 4 --checkpoint-every 0.02
+    --quiet)
+  run(${MPIRUN} 2 "${MPI_TOOL}" ${killed} --checkpoint-every 1.5 --resume --quiet)
+  file(SHA256 "${FOLDER}/killed.csv" events)
+  if(NOT events STREQUAL one)
+    message(FATAL_ERROR "a run that went on after process ${rank} was lost has other events: ${FOLDER}/killed.csv")
+  endif()
+  file(REMOVE "${FOLDER}/killed.csv" "${FOLDER}/killed.state")
+endforeach()
+run("${TOOL}" --generate spheres --bodies 20000 --density 0.2 --seed 5 --table --output many.json --quiet)
+set(many many.json --until 1000 --domains 4 --rate 1000 --quiet)
+lose(0 running.csv.unfinished "there is no checkpoint yet to go on from" ${many} --events running.csv --checkpoint
+  none.state --checkpoint-every 900)
+lose(${last} other.csv.part-* "there is no checkpoint to go on from: --checkpoint makes some" ${many} --events other.csv)
 
 file(STRINGS "${FOLDER}/one.csv" lines)
 list(LENGTH lines count)

@@ -1,12 +1,12 @@
 // The event logs of sorted lists and of worlds whose bodies keep their orientation, each with every queue or broad
-// phase, and some in domains: see replay.hpp. The file in the repository is made by: event_log_hash >
+// phase, and of worlds in domains: see replay.hpp. The file in the repository is made by: event_log_hash >
 // tests/replay/golden.txt
 #include "kds/events/calendar_queue.hpp"
 #include "kds/events/dary_queue.hpp"
 #include "kds/events/pairing_queue.hpp"
 #include "kds/simulator.hpp"
 #include "structures/sorted_list.hpp"
-#include "tests/collision/parallel/parallel_log.hpp"
+#include "tests/replay/divided.hpp"
 #include "tests/replay/replay.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/structures/random_values.hpp"
@@ -15,9 +15,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -72,9 +70,11 @@ void add_lists(std::vector<Replay>& replays) {
 
 // --- worlds
 
-/// A scene run with each broad phase. All events are hashed in the order in which they are reported.
+/// A scene run with each broad phase, and in so many divisions. All events are hashed in the order in which they are
+/// reported.
 template <int Degree, class MakeScene>
-Replay with_each_broad_phase(std::string name, const WorldOptions& options, const MakeScene& scene) {
+Replay in_all_ways(std::string name, const WorldOptions& options, const MakeScene& scene, std::uint64_t divisions = 2,
+                   bool surely_divided = false) {
   Replay replay{std::move(name), {}};
   for (const auto& [method, method_name, what] : broad_phases) {
     WorldOptions chosen = options;
@@ -84,26 +84,20 @@ Replay with_each_broad_phase(std::string name, const WorldOptions& options, cons
                              for (const Event& e : run<Degree>(scene(), chosen)) hash.event(e);
                            }});
   }
-  return replay;
-}
-
-/// The same, and in domains: so many, with windows as long as they can be, and shorter ones.
-template <int Degree, class MakeScene>
-Replay with_domains(std::string name, const WorldOptions& options, const MakeScene& scene) {
-  Replay replay = with_each_broad_phase<Degree>(std::move(name), options, scene);
-  for (const auto& [way, domains, longest_window] :
-       {std::tuple("2-domains", 2u, 1e300), std::tuple("3-domains", 3u, 0.1), std::tuple("7-domains", 7u, 0.013)}) {
-    replay.ways.push_back({way, [=, domains = domains, longest_window = longest_window](EventHash& hash) {
-                             const auto made = scene();
-                             collision::tests::ParallelLog log;
-                             collision::ParallelWorld<Degree> world(
-                                 options, {.threads = 1, .domains = domains, .longest_window = longest_window}, &log);
-                             for (const auto& body : made.bodies) world.add_body(body);
-                             world.advance_to(options.start_time + made.end_time);
-                             if (world.counters().steps == 0) throw std::runtime_error("a scene was not divided");
-                             for (const Event& e : log.events) hash.event(e);
-                           }});
-  }
+  const auto fill = [=](World<Degree>& world) {
+    for (const auto& body : scene().bodies) world.add_body(body);
+  };
+  add_divisions<certificates::PointMotion<Degree>>(replay, divisions,
+                                                   {.options = options,
+                                                    .end_time = scene().end_time,
+                                                    .fill = fill,
+                                                    .run = [=] { return run<Degree>(scene(), options); },
+                                                    .untold =
+                                                        [](const Event& event) {
+                                                          return is_pair_event(event) || event.kind == Kind::rests ||
+                                                                 event.kind == Kind::wakes;
+                                                        },
+                                                    .surely_divided = surely_divided});
   return replay;
 }
 
@@ -128,7 +122,7 @@ void add_worlds(std::vector<Replay>& replays) {
         options.report_pairs = true;
         if (elastic) options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(8)};
         const SceneOptions scene{.shapes = shapes, .numbers = numbers, .scripts = !elastic, .heterogeneous = elastic};
-        replays.push_back(with_each_broad_phase<Degree>(name, options, [=] { return random_scene<Degree>(scene, 5); }));
+        replays.push_back(in_all_ways<Degree>(name, options, [=] { return random_scene<Degree>(scene, 5); }));
       }
     }
   }
@@ -143,10 +137,11 @@ void add_divided(std::vector<Replay>& replays) {
       options.walls = Walls{Vector3d::Constant(-2), Vector3d::Constant(12)};
       SceneOptions scene{.shapes = shapes, .numbers = numbers, .heterogeneous = true};
       scene.bodies = 80, scene.side = 10, scene.end_time = Degree == 1 ? 2 : 1;
-      replays.push_back(with_domains<Degree>("domains/" + std::to_string(Degree) + '/' +
-                                                 word(collision::tests::name(shapes)) +
-                                                 (numbers == Numbers::fine ? "/fine" : "/coarse"),
-                                             options, [=] { return random_scene<Degree>(scene, 8); }));
+      constexpr std::uint64_t divisions = 6;
+      const std::string name = "domains/" + std::to_string(Degree) + '/' + word(collision::tests::name(shapes)) +
+                               (numbers == Numbers::fine ? "/fine" : "/coarse");
+      const auto make = [=] { return random_scene<Degree>(scene, 8); };
+      replays.push_back(in_all_ways<Degree>(name, options, make, divisions, true));
     }
   }
 }
@@ -154,16 +149,16 @@ void add_divided(std::vector<Replay>& replays) {
 void add_bounces(std::vector<Replay>& replays) {
   WorldOptions options;
   options.response = Response::elastic;
-  replays.push_back(with_each_broad_phase<2>("bounces", options, [] { return bouncing_scene(); }));
-  replays.push_back(with_each_broad_phase<2>("rest", options, [] { return resting_scene(); }));
-  replays.push_back(with_each_broad_phase<2>("capsules", options, [] { return capsule_scene(); }));
+  replays.push_back(in_all_ways<2>("bounces", options, [] { return bouncing_scene(); }));
+  replays.push_back(in_all_ways<2>("rest", options, [] { return resting_scene(); }));
+  replays.push_back(in_all_ways<2>("capsules", options, [] { return capsule_scene(); }));
 }
 
 void add_bending(std::vector<Replay>& replays) {
   WorldOptions options;
-  replays.push_back(with_each_broad_phase<1>("bending/none", options, [] { return bending_scene<1>(false); }));
+  replays.push_back(in_all_ways<1>("bending/none", options, [] { return bending_scene<1>(false); }));
   options.response = Response::elastic;
-  replays.push_back(with_each_broad_phase<2>("bending/elastic", options, [] { return bending_scene<2>(true); }));
+  replays.push_back(in_all_ways<2>("bending/elastic", options, [] { return bending_scene<2>(true); }));
 }
 
 std::vector<Replay> all_replays() {

@@ -1,10 +1,11 @@
-// The event logs of worlds whose bodies turn, with each broad phase, in windows and with snapshots on the way: see
-// replay.hpp. The file in the repository is made by: turning_log_hash > tests/replay/golden_turning.txt
+// The event logs of worlds whose bodies turn, with each broad phase, in windows, with snapshots on the way, and in
+// domains: see replay.hpp. The file in the repository is made by: turning_log_hash > tests/replay/golden_turning.txt
 #include "collision/response/mass_properties.hpp"
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "tests/replay/divided.hpp"
 #include "tests/replay/replay.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -19,24 +20,28 @@
 namespace kds::replay {
 namespace {
 
+/// Writes everything down.
 template <int Degree>
-struct HashingListener final : TurningWorld<Degree>::Listener {
+struct Recorder final : TurningWorld<Degree>::Listener {
   using W = TurningWorld<Degree>;
   using Kind = collision::tests::Kind;
 
-  EventHash* hash;
+  std::vector<Event> events;
 
-  explicit HashingListener(EventHash* into) : hash(into) {}
-  void contact(W&, const PairEvent& e) override { hash->event({Kind::contact, e.a, e.b, e.contact}); }
-  void separation(W&, const PairEvent& e) override { hash->event({Kind::separation, e.a, e.b, e.contact}); }
-  void overlap(W&, const PairEvent& e) override { hash->event({Kind::overlap, e.a, e.b, e.contact}); }
+  void contact(W&, const PairEvent& e) override { events.push_back({Kind::contact, e.a, e.b, e.contact}); }
+  void separation(W&, const PairEvent& e) override { events.push_back({Kind::separation, e.a, e.b, e.contact}); }
+  void overlap(W&, const PairEvent& e) override { events.push_back({Kind::overlap, e.a, e.b, e.contact}); }
   void wall(W&, const WallEvent& e) override {
-    hash->event({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
+    events.push_back({Kind::wall, e.body, static_cast<BodyId>(e.wall), e.contact});
   }
-  void rests(W&, const PairEvent& e) override { hash->event({Kind::rests, e.a, e.b, e.contact}); }
-  void wakes(W&, const PairEvent& e) override { hash->event({Kind::wakes, e.a, e.b, e.contact}); }
-  void pair_began(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_began, a, b, {.time = t}}); }
-  void pair_ended(W&, BodyId a, BodyId b, double t) override { hash->event({Kind::pair_ended, a, b, {.time = t}}); }
+  void rests(W&, const PairEvent& e) override { events.push_back({Kind::rests, e.a, e.b, e.contact}); }
+  void wakes(W&, const PairEvent& e) override { events.push_back({Kind::wakes, e.a, e.b, e.contact}); }
+  void pair_began(W&, BodyId a, BodyId b, double t) override {
+    events.push_back({Kind::pair_began, a, b, {.time = t}});
+  }
+  void pair_ended(W&, BodyId a, BodyId b, double t) override {
+    events.push_back({Kind::pair_ended, a, b, {.time = t}});
+  }
 };
 
 Vector3d random_vector(kds::tests::Random& random, double size) {
@@ -150,8 +155,8 @@ void fill(TurningWorld<Degree>& world, Bodies bodies, std::uint64_t seed) {
 enum class Drive { at_once, in_windows, by_snapshots };
 
 template <int Degree>
-void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& hash) {
-  HashingListener<Degree> listener(&hash);
+std::vector<Event> run(Bodies bodies, const WorldOptions& options, Drive drive) {
+  Recorder<Degree> listener;
   auto world = std::make_unique<TurningWorld<Degree>>(options, &listener);
   fill(*world, bodies, 11);
   if (drive != Drive::at_once) {
@@ -164,6 +169,7 @@ void run(Bodies bodies, const WorldOptions& options, Drive drive, EventHash& has
     }
   }
   world->advance_to(end_time);
+  return listener.events;
 }
 
 template <int Degree>
@@ -188,11 +194,22 @@ void add_worlds(std::vector<Replay>& replays) {
         if (response == Response::elastic && what != Bodies::crates && what != Bodies::heap &&
             what != Bodies::in_a_room)
           options.walls = Walls{Vector3d::Constant(-1), Vector3d::Constant(6)};
-        replay.ways.push_back({std::move(way), [=](EventHash& hash) { run<Degree>(what, options, drive, hash); }});
+        replay.ways.push_back({std::move(way), [=](EventHash& hash) {
+                                 for (const Event& event : run<Degree>(what, options, drive)) hash.event(event);
+                               }});
+        return options;
       };
       for (const auto& [broad_phase, way, what] : broad_phases) add(std::string(way), broad_phase, Drive::at_once);
-      add("windows", BroadPhaseKind::automatic, Drive::in_windows);
+      const WorldOptions options = add("windows", BroadPhaseKind::automatic, Drive::in_windows);
       add("snapshots", BroadPhaseKind::automatic, Drive::by_snapshots);
+      add_divisions<certificates::RigidMotion<Degree>>(
+          replay, 2,
+          {.options = options,
+           .end_time = end_time,
+           .fill = [=](TurningWorld<Degree>& world) { fill(world, bodies, 11); },
+           .run = [=] { return run<Degree>(bodies, options, Drive::at_once); },
+           .untold =
+               [](const Event& event) { return is_pair_event(event) || event.kind == Kind::rebound_suppressed; }});
       replays.push_back(std::move(replay));
     }
   }

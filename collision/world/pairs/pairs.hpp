@@ -163,6 +163,9 @@ class Pairs final : public PairListener {
   }
   /// Forgets all pairs.
   void clear();
+  /// Gives back memory that fewer pairs do not need: forgets all, and takes them up again as they were. Precondition:
+  /// no body is about to enter or to jump. O(pairs and slots).
+  void fit();
   /// Calls visit(slot) for each body that passes through this one and overlaps it.
   void visit_overlapped(BodySlot id, SlotVisitor visit) const;
   /// A body is removed; the broad phase has ended its pairs. Those that overlap separate, with a report in mode `none`.

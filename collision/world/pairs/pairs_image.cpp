@@ -55,6 +55,14 @@ void Pairs<Motion>::clear() {
 }
 
 template <class Motion>
+void Pairs<Motion>::fit() {
+  const Image all = image();
+  clear();
+  make_room_for(all.pairs.size());
+  become(all);
+}
+
+template <class Motion>
 template <class Archive>
 void Pairs<Motion>::Image::archive(Archive& archive) {
   archive.each(pairs, [&](One& one) {

@@ -101,7 +101,8 @@ BodyProgress<Motion> Transfer<Motion>::progress(BodySlot slot) const {
 template <class Motion>
 void Transfer<Motion>::go_on_from(BodySlot slot, const BodyProgress<Motion>& progress) {
   parts_.bodies.move(slot, progress.motion);
-  parts_.bodies[slot].meetings = progress.meetings, parts_.bodies[slot].burst_start = progress.burst_start;
+  parts_.bodies[slot].meetings = static_cast<std::uint32_t>(progress.meetings);
+  parts_.bodies[slot].burst_start = progress.burst_start;
   parts_.tumbling.go_on_from(slot, progress.turning);
 }
 

@@ -9,6 +9,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -178,6 +179,47 @@ TEST_CASE("Processes: bodies that change where a process does not know them, and
     // One more to process 0, of events; to all when the scene becomes one world, once.
     CHECK(messages.letters <= messages.exchanges * (neighbours + 1) + 11);
   }
+}
+
+TEST_CASE("Processes: 1, 2, 3, 4 and 8 have the same events, while bodies come from others", "[parallel]") {
+  auto gas = channel(160);
+  gas.scene.end_time = 12;
+  const ParallelOptions parallel{.domains = 8, .halo = 1, .longest_window = 0.2};
+  Seen seen;
+  for (const std::size_t count : {2u, 3u, 4u, 8u}) compare(gas, parallel, count, 3, seen);
+  CHECK(seen.windows > 4 * 20);
+  CHECK(seen.whole == 0);
+
+  // One has all domains. Of eight each has one, and tells of the bodies that it owns.
+  EventLog<1> right;
+  World<1> world(gas.options, &right);
+  for (const auto& body : gas.scene.bodies) world.add_body(body);
+  world.advance_to(gas.scene.end_time);
+  CHECK(run(gas, parallel, 1, 3)[0].events == right.events);
+  constexpr std::size_t polls = 6;
+  std::vector<std::vector<std::size_t>> owners(polls, std::vector<std::size_t>(gas.scene.bodies.size(), 8));
+  ThreadProcesses(8).run([&](Processes& processes) {
+    ParallelWorld<1> divided(gas.options, parallel, nullptr, &processes);
+    for (const auto& body : gas.scene.bodies) divided.add_body(body);
+    for (std::size_t poll = 0; poll < polls; ++poll) {
+      divided.advance_to(2.0 * static_cast<double>(poll + 1));
+      for (BodyId id = 0; id < gas.scene.bodies.size(); ++id) {
+        try {
+          divided.motion(id);
+          owners[poll][id] = processes.rank();
+        } catch (const std::logic_error&) {  // it is another's
+        }
+      }
+    }
+  });
+  std::size_t gone_over = 0;
+  for (std::size_t id = 0; id < gas.scene.bodies.size(); ++id) {
+    std::vector<std::size_t> of;
+    for (const auto& at : owners) of.push_back(at[id]);
+    REQUIRE(*std::max_element(of.begin(), of.end()) < 8);
+    if (*std::max_element(of.begin(), of.end()) > *std::min_element(of.begin(), of.end()) + 1) ++gone_over;
+  }
+  CHECK(gone_over > 10);  // to the neighbour of the neighbour, and farther
 }
 
 TEST_CASE("Processes: bodies that come without having changed the motion of any that others know", "[parallel]") {

@@ -64,8 +64,9 @@ inline Trial<1> lattice(int side, double gap) {
   Trial<1> result;
   for (int i = 0; i < side * side * side; ++i) {
     const Eigen::Vector3d place = gap * Eigen::Vector3d(i % side, i / side % side, i / side / side);
-    const Eigen::Vector3d velocity(random.integer(-1, 1), random.integer(-1, 1), random.integer(-1, 1));
-    result.scene.bodies.push_back(ball<1>(0.5, place, velocity));
+    // In statements of their own: compilers differ in the order in which they evaluate arguments.
+    const int w = random.integer(-1, 1), v = random.integer(-1, 1), u = random.integer(-1, 1);
+    result.scene.bodies.push_back(ball<1>(0.5, place, Eigen::Vector3d(u, v, w)));
   }
   result.scene.end_time = 4;
   result.options.response = Response::elastic;

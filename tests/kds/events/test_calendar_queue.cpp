@@ -3,6 +3,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cstdint>
 #include <set>
 #include <utility>
 
@@ -91,6 +93,63 @@ TEST_CASE("a calendar tells day by day of what comes, and is the same after it",
   }
   CHECK(seen_first > 1000);
   CHECK(seen_second > 1000);
+}
+
+namespace {
+
+/// Ranks that are kept with events, as they were when these were set.
+struct ChangingRank {
+  static inline std::uint64_t seed = 0;
+  std::uint64_t operator()(Slot slot) const { return (slot + seed) * 0x9e3779b97f4a7c15 >> 60; }
+};
+
+/// Two queues have the same events in the same order, though one gives memory back now and then.
+template <class Queue>
+void check_fit(std::uint64_t seed) {
+  Random random(seed);
+  Queue kept, fitted;
+  const std::size_t slots = 1 + random.below(2000);
+  kept.resize(slots), fitted.resize(slots);
+  double now = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto slot = static_cast<Slot>(random.below(slots));
+    const bool fills = i / 500 % 2 == 0;
+    ChangingRank::seed = 0;
+    if (random.one_in(fills ? 5 : 2)) {
+      kept.clear(slot), fitted.clear(slot);
+    } else if (fills || random.one_in(4)) {
+      ChangingRank::seed = static_cast<std::uint64_t>(i);
+      const double time = now + random.integer(0, 200) / 64.0;
+      kept.set(slot, time), fitted.set(slot, time);
+    } else if (!kept.empty()) {
+      now = std::max(now, kept.top().time);
+      kept.pop(), fitted.pop();
+    }
+    ChangingRank::seed = 1;  // is not asked any more
+    if (random.one_in(50)) fitted.fit();
+    REQUIRE(kept.size() == fitted.size());
+    REQUIRE(kept.operations() == fitted.operations());
+    if (kept.empty()) continue;
+    REQUIRE(kept.top().time == fitted.top().time);
+    REQUIRE(kept.top().slot == fitted.top().slot);
+  }
+  while (!kept.empty()) {
+    REQUIRE(kept.top().slot == fitted.top().slot);
+    kept.pop(), fitted.pop();
+  }
+  REQUIRE(fitted.empty());
+  fitted.fit();
+  CHECK(fitted.slots() == slots);
+}
+
+}  // namespace
+
+TEST_CASE("a calendar that gives memory back has the same events in the same order", "[events]") {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    CAPTURE(seed);
+    check_fit<CalendarQueue<>>(seed);
+    check_fit<CalendarQueue<ChangingRank>>(seed);
+  }
 }
 
 TEST_CASE("few events among many slots are in order, also where slots take over from others", "[events]") {
