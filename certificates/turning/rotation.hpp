@@ -26,7 +26,9 @@ inline double magnitude_sum(const Eigen::Vector3d& v) { return std::abs(v[0]) + 
 /// n = W / |W| is known to 3 u; p = n x y to 6 u, h = n x p to 12 u; with s and c as sine_cosine() bounds them, beyond
 /// their radii, s p errs by 7 u, (1 - c) h by 28 u, and the sums by 3 u: 38 u of |y|. In all less than 70 u, to which
 /// the radii of s and c are added: 2^-46 = 128 u is charged. Where |q|^2 or |W|^2 are not between 2^-400 and 2^400
-/// nothing is said: the error is infinite; otherwise underflow costs less than 2^-600.
+/// nothing is said: the error is infinite; otherwise underflow costs less than 2^-600. But spins below that range that
+/// have turned by next to nothing count as still, and their angle as an error: it is at most 2 |t - start| times the
+/// greatest coordinate of W, as sqrt(3) and roundings are less than 2.
 class Rotation {
  public:
   Rotation(const Eigen::Quaterniond& q, const Spin& spin, double t) : Rotation(q, spin, spin.rate(), t) {}
@@ -86,10 +88,20 @@ class Rotation {
   double error() const { return error_; }
 
  private:
+  static constexpr double slowest = 0x1p-200;      ///< rad/s
+  static constexpr double least_angle = 0x1p-100;  ///< rad
+
   static bool in_range(double square) { return square >= 0x1p-400 && square <= 0x1p400; }
 
   void turn(const Spin& spin, const Ball<DoubleDouble>& rate, double t) {
     const Eigen::Vector3d velocity(spin.velocity[0], spin.velocity[1], spin.velocity[2]);
+    if (const double greatest = velocity.cwiseAbs().maxCoeff(); greatest < slowest) {
+      const double angle = 2 * std::abs(t - spin.start) * greatest;
+      if (angle <= least_angle) {
+        error_ += angle;
+        return;
+      }
+    }
     const auto a = sine_cosine<Ball<double>>(spin.angle(rate, t));
     axis_ = velocity * (1 / rate.middle.high);
     sine_ = a.sine.middle;

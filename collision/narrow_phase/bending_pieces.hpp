@@ -18,7 +18,8 @@ namespace kds::collision {
 /// In a piece the two go no farther, relative to each other, than `farthest`: the tolerance of features has to be a
 /// part of the size of a query that can be told from roundings. After the last keyframe the first piece lasts until the
 /// two have gone as far as the smaller one is large, and each next one is twice as long, up to that limit: so boxes
-/// that hold all of a piece are useful at first, and there are few pieces.
+/// that hold all of a piece are useful at first, and there are few pieces. So it is between keyframes that are too far
+/// apart for equal parts.
 ///
 /// Cost: O(k log k) to make for k keyframes to come; O(log k) a piece.
 template <int Degree>
@@ -62,7 +63,11 @@ class BendingPieces {
     const auto after = std::upper_bound(times_.begin() + 1, times_.end(), t);
     const double begin = *std::prev(after), end = *after;
     const double way = (end - begin) * std::max(speed(begin), speed(end));
-    const double count = std::clamp(std::ceil(way / farthest_), 1.0, most_parts);
+    if (way > most_parts * farthest_) {
+      const Piece piece = growing(t, begin, speed(begin));
+      return {piece.begin, std::min(piece.end, end)};
+    }
+    const double count = std::max(1.0, std::ceil(way / farthest_));
     const auto bound = [&](double i) {
       return i <= 0 ? begin : i >= count ? end : begin + (end - begin) * (i / count);
     };
@@ -73,17 +78,18 @@ class BendingPieces {
   }
 
   /// How long the first piece after the last keyframe is, in s.
-  double unit() const { return together() ? 1 : std::clamp(time_of(first_), 0x1p-100, 0x1p100); }
+  double unit() const { return together() ? 1 : std::clamp(time_of(first_, speed_), 0x1p-100, 0x1p100); }
 
  private:
-  /// The most pieces between two keyframes: more would be nearly as short as the spacing of doubles.
+  /// The most equal parts between two keyframes. Where more are needed pieces grow instead: equal ones would be far too
+  /// many in which the two, which are fast at the end, are still slow.
   static constexpr double most_parts = 0x1p20;
 
   double speed(double t) const { return norm(b_.velocity(t) - a_.velocity(t)) + turning_; }
 
-  /// After the last keyframe: the least time in which the two go so far; how far they have gone when piece k begins.
-  double time_of(double way) const {
-    return way > 0 ? 2 * way / (speed_ + std::sqrt(speed_ * speed_ + 2 * acceleration_ * way)) : 0;
+  /// The least time in which the two go so far, from a speed on; how far they have gone when piece k begins.
+  double time_of(double way, double speed) const {
+    return way > 0 ? 2 * way / (speed + std::sqrt(speed * speed + 2 * acceleration_ * way)) : 0;
   }
   double way_at(double k) const {
     const double whole = std::ldexp(1.0, doublings_);
@@ -91,12 +97,17 @@ class BendingPieces {
   }
 
   Piece after_last(double t) const {
-    const double time = t - last();
-    if (together()) return time < unit() ? Piece{last(), last() + unit()} : Piece{t, t + unit()};
-    const double way = (speed_ * time + 0.5 * acceleration_ * time * time) / first_;
+    if (!together()) return growing(t, last(), speed_);
+    return t - last() < unit() ? Piece{last(), last() + unit()} : Piece{t, t + unit()};
+  }
+
+  /// Of pieces that follow on each other from a keyframe on, at which the two have this speed.
+  Piece growing(double t, double from, double speed) const {
+    const double time = t - from;
+    const double way = (speed * time + 0.5 * acceleration_ * time * time) / first_;
     const double whole = std::ldexp(1.0, doublings_);
     double k = way < whole - 1 ? std::ilogb(way + 1) : doublings_ + std::floor((way - (whole - 1)) / whole);
-    const auto bound = [&](double i) { return last() + time_of(way_at(i)); };
+    const auto bound = [&](double i) { return from + time_of(way_at(i), speed); };
     while (bound(k + 1) <= t && bound(k + 2) > bound(k + 1)) ++k;
     while (k > 0 && bound(k) > t) --k;
     return {bound(k), bound(k + 1)};

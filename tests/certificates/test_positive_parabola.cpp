@@ -10,7 +10,8 @@
 namespace kds::certificates::test_positive_parabola {
 namespace {
 
-TEST_CASE("A parabola is positive for as long as is told, and not for much longer", "[positive_parabola]") {
+/// With numbers of magnitudes from 2^least to 2^greatest, and small whole ones.
+void check_against_exact_signs(int least, int greatest) {
   constexpr std::uint64_t seed = 1;
   tests::Random random(seed);
   int wrong = 0;
@@ -18,7 +19,7 @@ TEST_CASE("A parabola is positive for as long as is told, and not for much longe
   int roots = 0;
   for (int i = 0; i < 100'000; ++i) {
     const bool coarse = i % 2 != 0;
-    const auto number = [&] { return coarse ? random.coarse() : random.scaled(-20, 20); };
+    const auto number = [&] { return coarse ? random.coarse() : random.scaled(least, greatest); };
     const double c0 = std::abs(number());
     double c1 = number();
     const double c2 = random.one_in(5) ? 0 : number();
@@ -41,14 +42,23 @@ TEST_CASE("A parabola is positive for as long as is told, and not for much longe
     }
     wrong += !positive_at(s) || !positive_at(s / 2);
     ++roots;
-    const double discriminant = c1 * c1 - 4 * c0 * c2;
-    const bool simple = discriminant > 0.1 * (c1 * c1);
+    // A discriminant of more than a tenth of the square of c1.
+    const bool simple = (Exact(9) * Exact(c1) * Exact(c1) - Exact(40) * Exact(c0) * Exact(c2)).sign() > 0;
     short_of += simple && positive_at(s * 1.001);
   }
   INFO("seed " << seed);
   CHECK(wrong == 0);
   CHECK(short_of == 0);
   CHECK(roots > 10'000);
+}
+
+TEST_CASE("A parabola is positive for as long as is told, and not for much longer", "[positive_parabola]") {
+  check_against_exact_signs(-20, 20);
+}
+
+TEST_CASE("A parabola whose products are below the range of doubles is positive for as long", "[positive_parabola]") {
+  check_against_exact_signs(-1000, 0);
+  check_against_exact_signs(-600, -450);
 }
 
 TEST_CASE("A parabola that is zero or too large to tell is positive for no time", "[positive_parabola]") {

@@ -47,8 +47,8 @@ class PairFrame {
         turn_b(b.rotation(rates.b, t)),
         matrix_a(turn_a.matrix()),
         matrix_b(turn_b.matrix()),
-        spin_a(a.angular_velocity),
-        spin_b(b.angular_velocity),
+        spin_a(that_counts(a.angular_velocity)),
+        spin_b(that_counts(b.angular_velocity)),
         rate_a(norm(spin_a) * (1 + 0x1p-40)),
         rate_b(norm(spin_b) * (1 + 0x1p-40)) {
     const auto origin_a = a.origin(t);
@@ -87,14 +87,19 @@ class PairFrame {
   double time;
   certificates::Rotation turn_a, turn_b;
   Eigen::Matrix3d matrix_a, matrix_b;  ///< the same: columns are the axes
-  Eigen::Vector3d spin_a, spin_b;
-  double rate_a, rate_b;  ///< rad/s, rounded up
-  VectorJet way;          ///< from the centre of a to that of b
+  Eigen::Vector3d spin_a, spin_b;      ///< zero where they are as good as still
+  double rate_a, rate_b;               ///< rad/s, rounded up
+  VectorJet way;                       ///< from the centre of a to that of b
   double way_error;
   double rate_error;  ///< of the rate of the way
   bool certain;       ///< whether numbers are in the range in which the bounds hold
 
  private:
+  /// A spin, or zero for one whose square may lose digits: what is left of it in any time of a clock is less than what
+  /// is charged for roundings.
+  static Eigen::Vector3d that_counts(const Eigen::Vector3d& spin) {
+    return spin.cwiseAbs().maxCoeff() < 0x1p-400 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : spin;
+  }
   static double speeds(const RigidMotion& motion, double t) {
     const double elapsed = std::abs(t - motion.path.start);
     double sum = certificates::magnitude_sum(motion.path.coefficients[1]);

@@ -176,8 +176,10 @@ Contact contact_with_half_space(const Body<Degree>& a, const Body<Degree>& b, do
 
 template <int Degree>
 double time_to_look_ahead(const certificates::RigidMotion<Degree>& a, const certificates::RigidMotion<Degree>& b) {
-  constexpr double radians = 0.25;    // Motions mostly change before the bodies have turned farther.
-  constexpr double longest = 0x1p20;  // s, of bodies that hardly turn
+  constexpr double radians = 0.25;  // Motions mostly change before the bodies have turned farther.
+  // Bodies that do not turn, or hardly, are looked at until the end of the clock: a shorter time would be a unit of
+  // time, and scenes that are slow in it would be looked at without end.
+  constexpr double longest = largest_magnitude;
   const double rates = norm(a.angular_velocity) + norm(b.angular_velocity);
   return rates > 0 ? std::min(longest, radians / rates) : longest;
 }

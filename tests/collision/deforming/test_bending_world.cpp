@@ -82,6 +82,37 @@ TEST_CASE("a ball above a sheet that bulges: contact and separation", "[deformin
   }
 }
 
+TEST_CASE("a keyframe in the far future makes contacts no less exact", "[deforming][world]") {
+  const samples::Sheet sheet(2);
+  const auto run = [&](double last, BroadPhaseKind kind, const Vector3d& acceleration) {
+    EventLog<2> log;
+    World<2> world({.response = Response::none, .broad_phase = kind}, &log);
+    const std::vector<MeshScript::Keyframe> keyframes{{0, sheet.positions}, {last, sheet.positions}};
+    world.add_body({.shape = BendingMesh{std::make_shared<const MeshScript>(keyframes, sheet.triangles)},
+                    .motion = {Path<2>::line(Vector3d::Zero(), Vector3d::Zero())}});
+    world.add_body({.shape = Sphere{0.25},
+                    .motion = {Path<2>::parabola(Vector3d(0.125, 0.25, 1), Vector3d(0, 0, -1), acceleration)}});
+    world.add_body({.shape = Sphere{0.25}, .motion = {Path<2>::line(Vector3d(0, 0, 2), Vector3d(1, 0, 0))}});
+    world.advance_to(4);
+    return log.events;
+  };
+  for (const Vector3d& acceleration : {Vector3d(0, 0, 0), Vector3d(0, 0, -2)}) {
+    const auto expected = run(8, BroadPhaseKind::all_pairs, acceleration);
+    REQUIRE(expected.size() == 2);  // the second ball passes above the sheet
+    for (const double last : {1e6, 1e12, 1e61, 1e300}) {
+      for (const BroadPhaseKind kind : {BroadPhaseKind::all_pairs, BroadPhaseKind::grid}) {
+        INFO("keyframe at " << last << ", acceleration " << acceleration.transpose());
+        const auto events = run(last, kind, acceleration);
+        REQUIRE(events.size() == expected.size());
+        for (std::size_t i = 0; i < events.size(); ++i) {
+          CHECK(events[i].kind == expected[i].kind);
+          CHECK(events[i].time() == Approx(expected[i].time()).epsilon(1e-7));
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("a ball is in contact with a sheet that bends while it is near, and not else", "[deforming][world]") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   CAPTURE(seed);
