@@ -152,7 +152,7 @@ class BendingPair {
   static double turning_speed(const Body& body) {
     if constexpr (turns<Motion>) {
       const bool counts = !bends(body.shape.shape) && ball_radius(body.shape.shape) == 0;
-      return counts ? norm(body.motion.angular_velocity) * body.shape.bounding_radius : 0;
+      return counts ? turning_rate(body.motion) * body.shape.bounding_radius : 0;
     }
     return 0;
   }

@@ -1,6 +1,7 @@
 // The surface of a body over one piece of time after the other, as tests of meshes that bend see it.
 #pragma once
 
+#include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/deforming/rigid_surface.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
@@ -17,6 +18,14 @@
 #include <optional>
 
 namespace kds::collision {
+
+/// How fast a motion turns, in rad/s; 0 of one that turns by next to nothing in all the time that a clock has, so that
+/// no pieces of time are made for it. How far its points are turned nevertheless is in the errors of their places.
+template <int Degree>
+double turning_rate(const certificates::RigidMotion<Degree>& motion) {
+  const double rate = norm(motion.angular_velocity);
+  return rate < 0x1p-400 ? 0 : rate;
+}
 
 /// The surface of one body. Keeps a reference to the body.
 ///
@@ -44,7 +53,7 @@ class PieceSurface {
   double longest_piece(double error) const {
     if constexpr (turns<Motion>) {
       if (script_ || !(rigid_->vertex_radius() > 0)) return never;
-      const double rate = norm(body_.motion.angular_velocity);
+      const double rate = turning_rate(body_.motion);
       return rate > 0 ? std::cbrt(81.0 / 2 * error / rigid_->vertex_radius()) / rate : never;
     }
     return never;

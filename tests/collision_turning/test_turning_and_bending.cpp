@@ -216,6 +216,35 @@ TEST_CASE("a compound of hulls meets a sheet that bends as its parts do") {
   CHECK(events > 6);
 }
 
+TEST_CASE("what turns by next to nothing meets a sheet that bends as what does not turn") {
+  const auto run = [](double spin) {
+    samples::Random random(5);
+    Log log;
+    Turning world({.response = Response::none}, &log);
+    world.add_body({.shape = random_sheet(random), .motion = {RigidMotion<2>{}}});
+    for (const Shape& shape : {Shape(Box{Vector3d(0.25, 0.5, 0.375)}), Shape(Capsule{0.5, 0.25})}) {
+      const RigidMotion<2> motion{Path::line(Vector3d(random.vector(0.5) + Vector3d(0, 0, 4)), Vector3d(0, 0, -2)),
+                                  random.orientation(), spin * Vector3d(1, 0, 0.5)};
+      world.add_body({.shape = shape, .motion = {motion}});
+    }
+    world.advance_to(6);
+    world.audit();
+    return log.events;
+  };
+  const auto still = run(0);
+  REQUIRE(still.size() >= 4);
+  for (const double spin : {1e-59, 1e-61, 1e-100, 1e-119, 1e-121, 1e-150, 1e-200, 1e-300, 5e-324}) {
+    INFO("spin " << spin);
+    const auto events = run(spin);
+    REQUIRE(events.size() == still.size());
+    for (std::size_t i = 0; i < events.size(); ++i) {
+      CHECK(std::string(events[i].what) == still[i].what);
+      CHECK(events[i].contact.time == Approx(still[i].contact.time).epsilon(0).margin(1e-6));
+      CHECK(events[i].contact.point.allFinite());
+    }
+  }
+}
+
 TEST_CASE("meshes that bend do not turn themselves") {
   const BendingMesh sheet = bending({{0, samples::Sheet(2).positions}}, samples::Sheet(2).triangles);
   Turning world({.response = Response::none});
