@@ -157,8 +157,8 @@ class BendingPair {
     return 0;
   }
 
-  /// A time from t on before which nothing touches; the begin of a part, or later than the horizon. Many parts are
-  /// looked at as one, with coarser paths, as long as that is enough.
+  /// A time from t on before which nothing touches; the begin of a part, when the balls around the two overlap next, or
+  /// later than the horizon. Many parts are looked at as one, with coarser paths, as long as that is enough.
   double apart_until(double t) {
     constexpr double coarsest = 256;  // times as long as a part: there paths are off by 2^-6 of the mesh
     std::uint64_t most = 1;
@@ -180,6 +180,7 @@ class BendingPair {
         }
       }
       t = whole.end;
+      if (const double meet = balls_meet(t); meet > t) return meet;
     }
     return t;
   }

@@ -233,7 +233,8 @@ TEST_CASE("what turns by next to nothing meets a sheet that bends as what does n
   };
   const auto still = run(0);
   REQUIRE(still.size() >= 4);
-  for (const double spin : {1e-59, 1e-61, 1e-100, 1e-119, 1e-121, 1e-150, 1e-200, 1e-300, 5e-324}) {
+  // Those that have passed the sheet are not followed for ever.
+  for (const double spin : {1e-9, 1e-59, 1e-61, 1e-100, 1e-119, 1e-121, 1e-150, 1e-200, 1e-300, 5e-324}) {
     INFO("spin " << spin);
     const auto events = run(spin);
     REQUIRE(events.size() == still.size());
