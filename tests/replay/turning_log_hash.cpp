@@ -206,8 +206,8 @@ void add_worlds(std::vector<Replay>& replays) {
           replay, 2,
           {.options = options,
            .end_time = end_time,
-           .fill = [=](TurningWorld<Degree>& world) { fill(world, bodies, 11); },
-           .run = [=] { return run<Degree>(bodies, options, Drive::at_once); },
+           .fill = [what = bodies](TurningWorld<Degree>& world) { fill(world, what, 11); },
+           .run = [=, what = bodies] { return run<Degree>(what, options, Drive::at_once); },
            .untold =
                [](const Event& event) { return is_pair_event(event) || event.kind == Kind::rebound_suppressed; }});
       replays.push_back(std::move(replay));
