@@ -17,6 +17,9 @@ namespace kds::collision {
 
 /// Greatest magnitude of the components of an angular velocity, rad/s.
 inline constexpr double largest_rate = 0x1p200;  ///< 1.6e60
+/// What turns more slowly, in rad/s, counts as still where pieces of time and bounds are made: it turns by less than
+/// 2^-190 rad in all the time that a clock has.
+inline constexpr double slowest_rate = 0x1p-400;  ///< 3.9e-121
 
 /// Whether all numbers of a motion are finite and in range.
 template <int Degree>

@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_motion.hpp"
 #include "collision/deforming/rigid_surface.hpp"
+#include "collision/motion_range.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/shapes/shape_forms.hpp"
@@ -19,12 +20,12 @@
 
 namespace kds::collision {
 
-/// How fast a motion turns, in rad/s; 0 of one that turns by next to nothing in all the time that a clock has, so that
-/// no pieces of time are made for it. How far its points are turned nevertheless is in the errors of their places.
+/// How fast a motion turns, in rad/s; 0 below slowest_rate, so that no pieces of time are made for it. How far its
+/// points are turned nevertheless is in the errors of their places.
 template <int Degree>
 double turning_rate(const certificates::RigidMotion<Degree>& motion) {
   const double rate = norm(motion.angular_velocity);
-  return rate < 0x1p-400 ? 0 : rate;
+  return rate < slowest_rate ? 0 : rate;
 }
 
 /// The surface of one body. Keeps a reference to the body.

@@ -4,6 +4,7 @@
 #include "certificates/ball_separation.hpp"
 #include "certificates/positive_parabola.hpp"
 #include "certificates/turning/rigid_motion.hpp"
+#include "collision/motion_range.hpp"
 #include "collision/narrow_phase/turning/jets.hpp"
 #include "kds/arithmetic/lattice.hpp"
 #include "kds/roots/failure_time.hpp"
@@ -95,10 +96,9 @@ class PairFrame {
   bool certain;       ///< whether numbers are in the range in which the bounds hold
 
  private:
-  /// A spin, or zero for one whose square may lose digits: what is left of it in any time of a clock is less than what
-  /// is charged for roundings.
+  /// A spin, or zero for one whose square may lose digits: what it turns by is less than what is charged for roundings.
   static Eigen::Vector3d that_counts(const Eigen::Vector3d& spin) {
-    return spin.cwiseAbs().maxCoeff() < 0x1p-400 ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : spin;
+    return spin.cwiseAbs().maxCoeff() < slowest_rate ? Eigen::Vector3d(Eigen::Vector3d::Zero()) : spin;
   }
   static double speeds(const RigidMotion& motion, double t) {
     const double elapsed = std::abs(t - motion.path.start);

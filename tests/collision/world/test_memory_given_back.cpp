@@ -68,9 +68,8 @@ void come_and_go(Run& run, int balls, std::uint64_t seed) {
     world.advance_to(world.now() + 0.2);
     std::vector<BodyId> there;
     world.visit_bodies([&](BodyId id) { there.push_back(id); });
-    std::size_t left = 0;
     for (const BodyId id : there) {
-      if (random.one_in(10) && ++left > 0) continue;
+      if (random.one_in(10)) continue;
       world.remove_body(id);
       if (random.one_in(1000)) world.advance_to(world.now() + 1e-3);
     }

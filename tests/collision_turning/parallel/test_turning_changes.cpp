@@ -1,6 +1,7 @@
 // A listener that changes a scene of bodies that turn, in domains, makes the events that it makes of one world, bit for
 // bit.
 #include "tests/collision/parallel/stagings.hpp"
+#include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -12,13 +13,9 @@ namespace {
 
 using certificates::RigidMotion;
 using Eigen::Vector3d;
+using kds::tests::random_vector;
 using tests::Event;
 using tests::Random;
-
-Vector3d random_vector(Random& random, double size) {
-  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
-  return {x, y, z};
-}
 
 /// At the k-th event a body comes or goes, jumps, turns otherwise, is given another motion, or a timer is set.
 template <int Degree>
