@@ -137,7 +137,7 @@ void BasicWorld<Motion>::audit(double t) const {
 
 template <class Motion>
 double BasicWorld<Motion>::now() const {
-  return engine_->queries().now();
+  return engine_->now();
 }
 
 template <class Motion>
@@ -152,8 +152,7 @@ bool BasicWorld<Motion>::contains(BodyId id) const {
 
 template <class Motion>
 const Motion& BasicWorld<Motion>::motion(BodyId id) const {
-  const auto& bodies = engine_->bodies();
-  return bodies.motion(bodies.slot_of(id));
+  return engine_->motion(id);
 }
 
 template <class Motion>
@@ -258,7 +257,7 @@ void BasicWorld<Motion>::visit_bodies(BodyVisitor visit) const {
 
 template <class Motion>
 WorldCounters BasicWorld<Motion>::counters() const {
-  return engine_->parts().all_counters();
+  return engine_->counters();
 }
 
 template <class Motion>

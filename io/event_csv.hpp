@@ -24,6 +24,7 @@ class EventCsv final : public EventSink {
   /// written from which the run goes on. Throws OutputError if the file has not these bytes.
   EventCsv(const std::string& path, const Scene& scene, const std::optional<FilePlace>& from);
   void on_event(const Event& event) override;
+  bool hears_motions() const override { return false; }
   /// How many bytes there are, and a Checksum of them; they are in the file then.
   FilePlace flush();
   void close();

@@ -47,6 +47,7 @@ class EventPart final : public EventSink, public kds::collision::StepListener {
   EventPart(const std::string& path, const PartOf& of, const std::optional<FilePlace>& from);
 
   void on_event(const Event& event) override;
+  bool hears_motions() const override { return false; }
   void on_step(const kds::collision::StepEvents& events) override;
   /// Where the part is; all that is before is in the file then.
   FilePlace flush();

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string_view>
@@ -59,6 +60,8 @@ class EventSink {
   virtual void on_event(const Event&) {}
   /// From piece.start on the body moves so: a contact, a wall or what holds it has changed its motion.
   virtual void on_motion(std::uint32_t /*body*/, const MotionPiece& /*piece*/) {}
+  /// Whether on_motion() has to be called; if not, runs with bodies that precess are faster.
+  virtual bool hears_motions() const { return true; }
   /// The clock has come to `time`.
   virtual void on_time(double /*time*/) {}
 };
@@ -74,6 +77,9 @@ class EventSinks final : public EventSink {
   }
   void on_motion(std::uint32_t body, const MotionPiece& piece) override {
     for (EventSink* sink : sinks_) sink->on_motion(body, piece);
+  }
+  bool hears_motions() const override {
+    return std::any_of(sinks_.begin(), sinks_.end(), [](const EventSink* sink) { return sink->hears_motions(); });
   }
   void on_time(double time) override {
     for (EventSink* sink : sinks_) sink->on_time(time);

@@ -71,6 +71,7 @@ class Teller final : public kds::collision::BasicWorldListener<Motion> {
   void overlap(World&, const PairEvent& event) override { tell(EventKind::overlap, event); }
   void rebound_suppressed(World& world, const PairEvent& event) override { tell_motions(world, event); }
   void moved(World& world, BodyId id) override { tell_motion(world, id); }
+  bool hears_pieces() const override { return sink_.hears_motions(); }
 
   void wall(World& world, const WallEvent& event) override {
     tell_wall(EventKind::wall, event);

@@ -79,7 +79,8 @@ void Domain<Motion>::begin_window() {
   const auto& bodies = engine_.bodies();
   const StaticBox& cell = division_.partition.cell(index_);
   const double now = world_.now();
-  role_.assign(bodies.slots(), Role::unowned), place_.resize(bodies.slots()), has_changed_.assign(bodies.slots(), 0);
+  known_.resize(bodies.slots());
+  for (Known& known : known_) known.role = Role::unowned, known.changed = false;
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
@@ -87,9 +88,10 @@ void Domain<Motion>::begin_window() {
     if (!bodies.alive(slot)) continue;
     const DomainIndex owner = division_.owner_of(number(slot));
     if (owner == Division::nobody) continue;
+    Known& known = known_[slot];
     if (owner != index_) {
-      role_[slot] = Role::copy;
-      std::uint32_t& place = place_[slot];  // Mostly it is that which it was.
+      known.role = Role::copy;
+      std::uint32_t& place = known.place;  // Mostly it is that which it was.
       if (place >= neighbours_.size() || neighbours_[place].domain != owner) {
         const auto found = std::ranges::lower_bound(neighbours_, owner, {}, &NeighbourDomain::domain);
         place = static_cast<std::uint32_t>(found - neighbours_.begin());
@@ -100,11 +102,11 @@ void Domain<Motion>::begin_window() {
     ++report_.owned;
     const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot);
     if (steady && inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
-      role_[slot] = Role::deep;
+      known.role = Role::deep;
       continue;
     }
-    role_[slot] = Role::followed;
-    place_[slot] = static_cast<std::uint32_t>(followed_.size());
+    known.role = Role::followed;
+    known.place = static_cast<std::uint32_t>(followed_.size());
     followed_.push_back({slot, strangers_to(number(slot)), now, bodies.motion(slot)});
   }
   std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
@@ -126,10 +128,11 @@ std::uint32_t Domain<Motion>::strangers_to(BodySlot number) {
 
 template <class Motion>
 void Domain<Motion>::run(double until) {
-  for (const BodySlot slot : changed_) has_changed_[slot] = 0;
+  for (const BodySlot slot : changed_) known_[slot].changed = false;
   changed_.clear(), events_.clear(), fresh_.clear();
   report_.told = {};
   report_.computed = 0;
+  const double since = world_.now();
   try {
     world_.advance_to(until);
   } catch (const RestsInPart&) {
@@ -140,11 +143,22 @@ void Domain<Motion>::run(double until) {
   if (!report_.divisible) return;
   for (Followed& body : followed_) follow(body, until);
   const auto& bodies = engine_.bodies();
-  for (BodySlot slot = 0; slot < role_.size() && report_.stayed; ++slot) {
-    if (role_[slot] == Role::deep) report_.stayed = stays_deep(bodies.path(slot).position(until));
+  for (BodySlot slot = 0; slot < known_.size() && report_.stayed; ++slot) {
+    if (known_[slot].role == Role::deep) report_.stayed = stays_deep(bodies.path(slot).position(until));
   }
+  if constexpr (turns<Motion>) note_pieces(since);
   sort_by_number(fresh_);
   changes_.append(fresh_);
+}
+
+/// Pieces of bodies that precess follow from their last contacts, so they are no changes that are to be compared, but
+/// the store is to have the present ones.
+template <class Motion>
+void Domain<Motion>::note_pieces(double since) {
+  const auto& bodies = engine_.bodies();
+  for (BodySlot slot = 0; slot < known_.size(); ++slot) {
+    if (bodies.alive(slot) && bodies.path(slot).start >= since) tell_store(slot);
+  }
 }
 
 template <class Motion>
@@ -214,7 +228,7 @@ void Domain<Motion>::commit_meetings(BodyStore<Motion>& store) const {
 template <class Motion>
 void Domain<Motion>::append_changed(std::vector<BodySlot>& numbers) const {
   for (const BodySlot slot : changed_) {
-    if (role_[slot] != Role::unowned) numbers.push_back(number(slot));
+    if (known_[slot].role != Role::unowned) numbers.push_back(number(slot));
   }
 }
 
@@ -257,22 +271,35 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
 /// What others are to compare, and whether it has stayed where it had to.
 template <class Motion>
 void Domain<Motion>::note_change(BodySlot slot, double t) {
-  const Role role = role_[slot];
-  const bool tells = role == Role::unowned ? first_ : role != Role::copy;
-  if (tells && !std::exchange(has_changed_[slot], char{1})) changed_.push_back(slot);
-  if (role == Role::unowned) return;
+  tell_store(slot);
+  const Known& known = known_[slot];
+  if (known.role == Role::unowned) return;
   const Motion& motion = engine_.bodies().motion(slot);
-  if (role == Role::deep) {
+  if (known.role == Role::deep) {
     report_.stayed = report_.stayed && stays_deep(path_of(motion).position(t));
     return;
   }
-  if (role == Role::followed) {
-    Followed& body = followed_[place_[slot]];
+  if (known.role == Role::followed) {
+    Followed& body = followed_[known.place];
     follow(body, t);
     body.since = t, body.motion = motion;
     if (division_.is_known_to_one(number(slot))) return;
   }
   fresh_.push_back({number(slot), motion, t, engine_.transfer().progress(slot).turning});
+}
+
+template <class Motion>
+void Domain<Motion>::tell_store(BodySlot slot) {
+  Known& known = known_[slot];
+  const bool tells = known.role == Role::unowned ? first_ : known.role != Role::copy;
+  if (tells && !std::exchange(known.changed, true)) changed_.push_back(slot);
+}
+
+template <class Motion>
+DomainIndex Domain<Motion>::owner_of(BodySlot slot) const {
+  const Known& known = known_[slot];
+  if (known.role == Role::unowned) return Division::nobody;
+  return known.role == Role::copy ? neighbours_[known.place].domain : static_cast<DomainIndex>(index_);
 }
 
 /// Whether this is the first of the domains that know two bodies. Precondition: it knows both.
@@ -288,10 +315,10 @@ bool Domain<Motion>::is_first_to_know(BodySlot a, BodySlot b) const {
 template <class Motion>
 void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   ++report_.computed;
-  const BodySlot a = number(body_slot(event.a)), b = number(body_slot(event.b));
-  const DomainIndex of_a = division_.owner_of(a), of_b = division_.owner_of(b);
+  const BodySlot a = body_slot(event.a), b = body_slot(event.b);
+  const DomainIndex of_a = owner_of(a), of_b = owner_of(b);
   const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
-  const bool mine = fixed ? is_first_to_know(a, b) : of_a == index_ || of_b == index_;
+  const bool mine = fixed ? is_first_to_know(number(a), number(b)) : of_a == index_ || of_b == index_;
   if (!mine) return;
   const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
   // Of a shared one the owner of the first body counts it.
@@ -340,7 +367,7 @@ template <class Motion>
 void Domain<Motion>::wall(World&, const WallEvent& event) {
   ++report_.computed;
   const BodySlot slot = body_slot(event.body);
-  const Role role = role_[slot];
+  const Role role = known_[slot].role;
   const bool mine = role == Role::unowned ? is_first_to_know(number(slot), number(slot)) : role != Role::copy;
   if (mine) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
   if (mine && logs_) {
@@ -354,19 +381,14 @@ template <class Motion>
 void Domain<Motion>::piece(World&, BodyId id) {
   const BodySlot slot = body_slot(id);
   const double t = world_.now();
-  if (role_[slot] == Role::followed) {  // If it jumps out of the halo no shorter window would hold.
+  const Known& known = known_[slot];
+  if (known.role == Role::followed) {  // If it jumps out of the halo no shorter window would hold.
     const auto leaves = [&](const Motion& motion) {
       return outside(place_at(path_of(motion), t), division_.partition.cell(index_)) > division_.halo;
     };
-    if (!leaves(followed_[place_[slot]].motion) && leaves(engine_.bodies().motion(slot))) report_.divisible = false;
+    if (!leaves(followed_[known.place].motion) && leaves(engine_.bodies().motion(slot))) report_.divisible = false;
   }
   changed(slot, t);
-}
-
-/// A piece of the motion of a body that precesses begins.
-template <class Motion>
-void Domain<Motion>::moved(World&, BodyId id) {
-  changed(body_slot(id), world_.now());
 }
 
 #define KDS_INSTANTIATE(motion) template class Domain<motion>;

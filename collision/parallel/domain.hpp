@@ -125,12 +125,18 @@ class Domain final : private BasicWorldListener<Motion> {
     std::uint32_t owner;  ///< which of the neighbours it is
     Motion motion;        ///< when the window began
   };
+  /// What a body is here.
+  struct Known {
+    Role role = Role::unowned;
+    bool changed = false;     ///< in this step, and this domain tells the store
+    std::uint32_t place = 0;  ///< of followed bodies: in followed_; of copies: of the owner in neighbours_
+  };
   void contact(World&, const PairEvent& event) override;
   void separation(World&, const PairEvent& event) override;
   void overlap(World&, const PairEvent& event) override;
   void wall(World&, const WallEvent& event) override;
   void piece(World&, BodyId id) override;
-  void moved(World&, BodyId id) override;
+  bool hears_pieces() const override { return false; }
   void rebound_suppressed(World&, const PairEvent&) override { report_.divisible = false; }
   void rebound_suppressed_at_wall(World&, const WallEvent&) override { report_.divisible = false; }
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
@@ -142,11 +148,14 @@ class Domain final : private BasicWorldListener<Motion> {
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);
   BodySlot slot_of(BodySlot number) const { return slots_[place_of(number)]; }
+  DomainIndex owner_of(BodySlot slot) const;
   bool is_first_to_know(BodySlot a, BodySlot b) const;
   void record(DomainEvent::Kind kind, const PairEvent& event);
   void put(const DomainEvent& event);
   void changed(BodySlot slot, double t);
   void note_change(BodySlot slot, double t);
+  void tell_store(BodySlot slot);
+  void note_pieces(double since);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
     return inside(place, division_.partition.cell(index_)) - division_.bulge >= division_.halo;
@@ -160,13 +169,10 @@ class Domain final : private BasicWorldListener<Motion> {
   World world_;
   Engine<Motion>& engine_;
   std::vector<BodySlot> slots_;  ///< of the bodies that are known, ascending by their numbers
-  std::vector<Role> role_;       ///< by slot
-  std::vector<std::uint32_t>
-      place_;  ///< by slot, of followed bodies: in followed_; of copies: of the owner in neighbours_
-  std::vector<char> has_changed_;  ///< by slot: in this step, and this domain tells the store
+  std::vector<Known> known_;     ///< by slot
   std::vector<Followed> followed_;
   std::vector<Copy> copies_;       ///< by number
-  std::vector<BodySlot> changed_;  ///< slots of those bodies
+  std::vector<BodySlot> changed_;  ///< slots of the bodies of which this step tells the store
   std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;

@@ -82,6 +82,7 @@ class RelayedEvents final : public BasicWorldListener<Motion> {
   void timer(World& world, TimerId timer) override {
     tell(world, [&] { listener_.timer(timer, world.now()); });
   }
+  bool hears_pieces() const override { return false; }
 
  private:
   template <class Tell>

@@ -246,9 +246,30 @@ void Engine<Motion>::advance_to(double t) {
     Tumbling<Motion>& of;
     ~Unheard() { of.set_unheard_until(-never); }
   } unheard{parts_.tumbling};
-  if (!calls_.any()) unheard.of.set_unheard_until(t);
-  while (step(t)) {
+  if (!calls_.hears_pieces()) unheard.of.set_unheard_until(t);
+  try {
+    while (step(t)) {
+    }
+  } catch (...) {
+    if (guard_.whole()) look_at_all();  // The listener has thrown.
+    throw;
   }
+}
+
+template <class Motion>
+const Motion& Engine<Motion>::motion(BodyId id) {
+  const BodySlot slot = bodies().slot_of(id);
+  if (parts_.tumbling.is_alone(slot)) look_at_all();
+  return bodies().motion(slot);
+}
+
+/// From then on to the end of the call none is left alone: a listener that has asked once may always ask.
+template <class Motion>
+void Engine<Motion>::look_at_alone() {
+  parts_.tumbling.set_unheard_until(-never);
+  guard_.change([&] {
+    if constexpr (turns<Motion>) motions_.look_at_all();
+  });
 }
 
 template <class Motion>

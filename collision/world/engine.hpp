@@ -34,8 +34,12 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  Edits<Motion>& edits() { return edits_; }
-  const Queries<Motion>& queries() const { return queries_; }
+  /// What callers change and ask: bodies that have been left alone (turning/turning_pieces.cpp) are looked at first.
+  Edits<Motion>& edits() { return look_at_all(), edits_; }
+  const Queries<Motion>& queries() { return look_at_all(), queries_; }
+  WorldCounters counters() { return look_at_all(), parts_.all_counters(); }
+  const Motion& motion(BodyId id);
+  double now() const { return queries_.now(); }
   Transfer<Motion>& transfer() { return transfer_; }
   const Transfer<Motion>& transfer() const { return transfer_; }
   const WorldParts<Motion>& parts() const { return parts_; }
@@ -75,6 +79,14 @@ class Engine {
   bool process(Pairs<Motion>&) { return response_.process_pair(), true; }
   bool process(SelfContacts<Motion>&) { return response_.process_self_contact(), true; }
   bool process(Unbounded<Motion>&) { return false; }  // It has none.
+  /// Bodies that precess and have been left alone get the pieces that they would have otherwise.
+  void look_at_all() {
+    if constexpr (turns<Motion>) {
+      if (parts_.tumbling.any_alone()) [[unlikely]]
+        look_at_alone();
+    }
+  }
+  void look_at_alone();
   /// Whether an event that is due changes what can be observed.
   bool happens(const auto&) const { return true; }
   bool happens(const Volumes<Motion>& volumes) const { return volumes.from_caller(volumes.next_body()); }

@@ -18,8 +18,8 @@ class ListenerCalls {
   ListenerCalls(const ListenerCalls&) = delete;
   ListenerCalls& operator=(const ListenerCalls&) = delete;
 
-  /// Whether there is a listener.
-  bool any() const { return listener_ != &silent_; }
+  /// Whether there is a listener that is told of every piece of bodies that precess.
+  bool hears_pieces() const { return listener_ != &silent_ && listener_->hears_pieces(); }
   /// call(listener, world), in a step.
   template <class Call>
   void tell(const Call& call) {

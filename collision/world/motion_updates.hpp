@@ -47,6 +47,8 @@ class MotionUpdates final : private RestingListener<Motion> {
   void turn_on() requires(turns<Motion>);
   /// Bodies that were left alone, and whose pairs are to be tested, get the pieces that they would have otherwise.
   void look_at_tested() requires(turns<Motion>);
+  /// All of them get these.
+  void look_at_all() requires(turns<Motion>);
 
  private:
   /// Changes the motion of a body that takes no part in the event, and reports it.

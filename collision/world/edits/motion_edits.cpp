@@ -71,7 +71,8 @@ void Edits<Motion>::require_turns_for(BodySlot slot, std::span<const Motion> pie
     const bool keeps = bodies_[slot].shape && keeps_orientation(bodies_[slot].shape->shape);
     if (!tumbling_.has(slot) && !keeps) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      const std::string one = name + (pieces.size() == 1 ? "" : "[" + std::to_string(i) + "]");
+      std::string one = name;
+      if (pieces.size() > 1) one.append("[").append(std::to_string(i)).append("]");
       if (keeps) require_no_spin(bodies_[slot].shape->shape, pieces[i], one);
       if (tumbling_.has(slot)) require_steady_clock(pieces[i], clock_.now, one);
     }

@@ -50,6 +50,13 @@ void MotionUpdates<Motion>::look_at_tested() requires(turns<Motion>) {
   });
 }
 
+template <class Motion>
+void MotionUpdates<Motion>::look_at_all() requires(turns<Motion>) {
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
+    if (tumbling_.is_alone(slot)) look_at(slot);
+  }
+}
+
 /// The body goes on along its path and turns otherwise. Pairs with a body that is alone wait until that is looked at.
 template <class Motion>
 void MotionUpdates<Motion>::turn(BodySlot slot, const Motion& motion) requires(turns<Motion>) {
