@@ -44,7 +44,7 @@ inline double random_start(Random& random, bool coarse) {
   return coarse ? random.integer(-2, 2) : random.between(-2, 2);
 }
 
-inline Eigen::Vector3d random_vector(Random& random, bool coarse) {
+inline Eigen::Vector3d random_point(Random& random, bool coarse) {
   Eigen::Vector3d v;
   for (int d = 0; d < 3; ++d) v[d] = coarse ? random.integer(-4, 4) / 2.0 : random.between(-2, 2);
   return v;

@@ -66,9 +66,9 @@ TEMPLATE_TEST_CASE_SIG("balls begin to penetrate when the oracle's spheres do", 
     auto b = random_path<PathDegree>(random, false, 0);
     b.coefficients[0] *= 4;
     b.coefficients[1] =
-        a.coefficients[1] + (a.coefficients[0] - b.coefficients[0]) / 2 + random_vector(random, false) / 4;
+        a.coefficients[1] + (a.coefficients[0] - b.coefficients[0]) / 2 + random_point(random, false) / 4;
     for (std::size_t i = 2; i <= PathDegree; ++i) {
-      b.coefficients[i] = a.coefficients[i] + random_vector(random, false) / 8;
+      b.coefficients[i] = a.coefficients[i] + random_point(random, false) / 8;
     }
     const BallSeparation<PathDegree> balls{a, b, 0.5, 0.75};
     const auto contact = oracle::first_contact(body(a, 0.5), body(b, 0.75), 0, 4);

@@ -42,7 +42,7 @@ TEMPLATE_TEST_CASE_SIG("a ball is away from a vertex or an edge by the square of
     const auto b = random_path<PathDegree>(random, coarse, random.one_in(2) ? start : random_start(random, coarse));
     FeatureSeparation<PathDegree> feature{a, b, world, {}, {true, true, true}, random.integer(1, 6) / 4.0};
     for (auto& axis : feature.axes) {
-      if (!coarse) axis = random_vector(random, false);
+      if (!coarse) axis = random_point(random, false);
     }
     for (double& offset : feature.offset) offset = coarse ? random.integer(-2, 2) / 2.0 : random.between(-1, 1);
     if (random.one_in(2)) feature.used[random.below(3)] = false;

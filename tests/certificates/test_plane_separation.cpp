@@ -49,8 +49,8 @@ TEMPLATE_TEST_CASE_SIG("bodies are apart along an axis while the gap exceeds the
     const auto a = random_path<PathDegree>(random, coarse, start);
     const auto b = random_path<PathDegree>(random, coarse, random.one_in(2) ? start : random_start(random, coarse));
     std::vector<Vector3d> half_axes;
-    for (int i = 0; i < 6; ++i) half_axes.push_back(random_vector(random, coarse) / 4);
-    PlaneSeparation<PathDegree> planes{a, b, random_vector(random, coarse), random.one_in(2) ? 1.0 : -1.0, {}, {}};
+    for (int i = 0; i < 6; ++i) half_axes.push_back(random_point(random, coarse) / 4);
+    PlaneSeparation<PathDegree> planes{a, b, random_point(random, coarse), random.one_in(2) ? 1.0 : -1.0, {}, {}};
     for (std::size_t i = 0; i < random.below(7); ++i) planes.extents[i] = &half_axes[i];
     if (random.one_in(2)) planes.margins = {random.unit() / 8, random.unit() / 8};
     CAPTURE(round, coarse);
@@ -66,8 +66,8 @@ TEST_CASE("an axis across which half axes vanish up to rounding has the exact ex
     const auto a = random_path<1>(random, false, 0);
     const auto b = random_path<1>(random, false, 0);
     // Half axes across the axis but for roundings: their extent cancels, and its sign is any.
-    const Vector3d u = random_vector(random, false);
-    const Vector3d v = random_vector(random, false);
+    const Vector3d u = random_point(random, false);
+    const Vector3d v = random_point(random, false);
     const Vector3d axis = u.cross(v);
     const PlaneSeparation<1> planes{a, b, axis, 1, {&u, &v, nullptr, &u}, {}};
     CAPTURE(round);

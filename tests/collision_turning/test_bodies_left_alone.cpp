@@ -6,6 +6,7 @@
 #include "tests/collision/sample_compounds.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -26,14 +27,10 @@ using certificates::RigidMotion;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::tests::Random;
+using kds::tests::random_vector;
 
 template <int Degree>
 using Turning = BasicWorld<RigidMotion<Degree>>;
-
-Vector3d random_vector(Random& random) {
-  const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
-  return {x, y, z};
-}
 
 Shape random_shape(Random& random) {
   switch (random.below(6)) {

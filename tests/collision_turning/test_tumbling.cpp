@@ -7,6 +7,7 @@
 #include "collision/response/mass_properties.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -30,6 +31,7 @@ using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::tests::Random;
+using kds::tests::random_vector;
 
 template <int Degree>
 using Turning = BasicWorld<RigidMotion<Degree>>;
@@ -72,10 +74,6 @@ RigidMotion<Degree> motion(const Vector3d& position, const Vector3d& velocity, c
   return result;
 }
 
-Vector3d random_vector(Random& random) {
-  const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
-  return {x, y, z};
-}
 Quaterniond random_rotation(Random& random) {
   Quaterniond q(0, 0, 0, 0);
   while (q.norm() < 0.1) {

@@ -6,6 +6,7 @@
 #include "collision/world/turning/turning_extents.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -25,10 +26,7 @@ using certificates::RigidMotion;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::tests::Random;
-
-Vector3d random_vector(Random& random, double size) {
-  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-}
+using kds::tests::random_vector;
 
 /// About its origin or not.
 struct Body {

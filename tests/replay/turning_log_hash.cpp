@@ -9,6 +9,7 @@
 #include "tests/replay/replay.hpp"
 #include "tests/replay/scenes.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <array>
 #include <cstdint>
@@ -19,6 +20,8 @@
 
 namespace kds::replay {
 namespace {
+
+using kds::tests::random_vector;
 
 /// Writes everything down.
 template <int Degree>
@@ -43,13 +46,6 @@ struct Recorder final : TurningWorld<Degree>::Listener {
     events.push_back({Kind::pair_ended, a, b, {.time = t}});
   }
 };
-
-Vector3d random_vector(kds::tests::Random& random, double size) {
-  const double x = random.between(-size, size);
-  const double y = random.between(-size, size);
-  const double z = random.between(-size, size);
-  return {x, y, z};
-}
 
 Shape dumb_bell() {
   return collision::compound(std::vector<collision::CompoundPart>{{Box{Vector3d(0.25, 0.0625, 0.0625)}},

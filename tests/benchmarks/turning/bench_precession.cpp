@@ -4,6 +4,7 @@
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <Eigen/Geometry>
 
@@ -16,14 +17,10 @@ namespace {
 
 using namespace kds;
 using namespace kds::collision;
+using kds::tests::random_vector;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using Turning = TurningWorld<1>;
-
-Vector3d random_vector(tests::Random& random) {
-  const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
-  return {x, y, z};
-}
 
 struct Kind {
   const char* name;

@@ -7,6 +7,7 @@
 #include "tests/support/convex_gap.hpp"
 #include "tests/support/first_time_check.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -25,10 +26,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::tests::ConvexGap;
 using kds::tests::Random;
-
-Vector3d random_vector(Random& random, double size) {
-  return size * Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
-}
+using kds::tests::random_vector;
 
 /// Corners of a lattice, so that faces and edges of two are often parallel; or anywhere; or nearly in a plane.
 Shape random_hull(Random& random) {

@@ -4,6 +4,7 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision/response/random_rotation.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -23,6 +24,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using kds::collision::tests::random_rotation;
 using kds::tests::Random;
+using kds::tests::random_vector;
 using Long3 = Eigen::Matrix<long double, 3, 1>;
 using LongQuaternion = Eigen::Quaternion<long double>;
 
@@ -63,8 +65,6 @@ LongQuaternion by_small_steps(const PrincipalInertia& inertia, const RotationSta
 double angle_between(const Quaterniond& a, const LongQuaternion& b) {
   return static_cast<double>(a.cast<long double>().normalized().angularDistance(b));
 }
-
-Vector3d random_vector(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
 
 /// Moments of three kinds of bodies: any, plates, rods.
 Vector3d random_moments(Random& random, std::uint64_t seed) {
@@ -184,8 +184,7 @@ TEST_CASE("free rotation: velocities and impulses are made with the same inverse
   int unlike = 0;
   for (int round = 0; round < 1000; ++round) {
     const PrincipalInertia inertia = diagonal({random.between(0.5, 1), random.between(0.5, 1), random.between(0.5, 1)});
-    const RotationState state{Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)), upright,
-                              0};
+    const RotationState state{random_vector(random), upright, 0};
     unlike +=
         angular_velocity(inertia, state) != inverse_inertia(inertia, upright).diagonal().cwiseProduct(state.momentum);
   }

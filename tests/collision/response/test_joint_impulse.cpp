@@ -2,6 +2,7 @@
 #include "collision/response/joint_impulse.hpp"
 #include "collision/vectors.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -16,14 +17,10 @@ namespace {
 using namespace kds::collision;
 using Eigen::Vector3d;
 using kds::tests::Random;
+using kds::tests::random_vector;
 
 JointBody moving(double mass, double moment, const Vector3d& velocity, const Vector3d& spin = Vector3d::Zero()) {
   return {.mobility = Mobility::of_spherical(1 / mass, 1 / moment), .velocity = {velocity, spin}};
-}
-
-Vector3d random_vector(Random& random, double size) {
-  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
-  return {x, y, z};
 }
 
 double parting(const std::vector<JointBody>& bodies, const JointPlace& at) {

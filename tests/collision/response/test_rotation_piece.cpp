@@ -4,6 +4,7 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision/response/random_rotation.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -25,8 +26,7 @@ using Eigen::Vector3d;
 using kds::never;
 using kds::collision::tests::random_rotation;
 using kds::tests::Random;
-
-Vector3d random_vector(Random& random) { return {random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)}; }
+using kds::tests::random_vector;
 
 /// How far a piece is off the free rotation at most, at 64 times.
 double farthest(const PrincipalInertia& inertia, const RotationState& state, const Quaterniond& from, double t,

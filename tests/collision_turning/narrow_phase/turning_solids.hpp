@@ -4,6 +4,7 @@
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
 
 #include <cmath>
 #include <variant>
@@ -26,12 +27,6 @@ certificates::RigidMotion<Degree> motion_of(const Eigen::Vector3d& position, con
   certificates::RigidMotion<Degree> motion{{{position, velocity}, start}};
   motion.angular_velocity = spin;
   return motion;
-}
-
-/// In the cube of coordinates from -size to size.
-inline Eigen::Vector3d random_vector(Random& random, double size) {
-  const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
-  return {x, y, z};
 }
 
 /// Of a body that is at `place` where its motion begins, in the last two seconds before 0, and turns slowly or fast, or
