@@ -172,13 +172,10 @@ inline bool wide_enough(const Partition& partition, double halo) {
 
 }  // namespace detail
 
-/// How many domains a scene is to have: as many as are asked for, or one for each thread if it has enough to do. One if
-/// bodies turn: two on two threads take as long as one world (docs/parallel.md).
-template <class Motion>
-std::size_t domains_wanted(const ParallelOptions& options, std::size_t threads, std::size_t bodies) {
+/// How many domains a scene is to have: as many as are asked for, or one for each thread if it has enough to do.
+inline std::size_t domains_wanted(const ParallelOptions& options, std::size_t threads, std::size_t bodies) {
   constexpr std::size_t bodies_per_domain = 10'000;  // fewer are mostly copies of others'
   if (options.domains > 0) return bodies > 1 ? options.domains : 1;
-  if (turns<Motion>) return 1;
   return std::min({threads, bodies / bodies_per_domain, most_domains});
 }
 
@@ -257,7 +254,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
   const double halo = 2 * radius + options.halo * detail::spacing(count[0], -minus_low, high);
   // Places must be known far more exactly than the distances of bodies.
   if (!(std::isfinite(halo) && halo > 0x1p-20 * farthest)) return std::nullopt;
-  std::size_t wanted = domains_wanted<Motion>(options, threads, count[0]);
+  std::size_t wanted = domains_wanted(options, threads, count[0]);
   Partition partition(places, wanted, team);
   while (wanted > 1 && options.domains == 0 && !detail::wide_enough(partition, halo)) {
     wanted -= std::max<std::size_t>(1, wanted / 8);

@@ -15,7 +15,7 @@ struct ParallelOptions {
   std::size_t threads =
       0;  ///< of each process; 0 for as many as the machine has, or one if there are several processes
   /// Into how many domains the scene is divided, at most `most_domains`. 0: one for each thread, or fewer, so that each
-  /// has some 10 000 bodies, and one for bodies that turn. A scene with one domain runs as one world.
+  /// has some 10 000 bodies. A scene with one domain runs as one world.
   std::size_t domains = 0;
   /// How far beyond its domain a world knows bodies: this many mean distances of neighbours, and the greatest diameter
   /// of a body that contacts move. > 0. More makes windows longer and the worlds larger.

@@ -198,7 +198,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   /// Divides the scene; false if it is to be run as one world.
   bool divide() {
-    if (domains_wanted<BodyMotionType>(parallel_, workers(), world_.size()) < 2) {
+    if (domains_wanted(parallel_, workers(), world_.size()) < 2) {
       stretch_ = 0;
       return false;
     }

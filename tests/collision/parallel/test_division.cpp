@@ -145,15 +145,12 @@ TEST_CASE("Division: moves of bodies come out as they went in", "[parallel]") {
 
 TEST_CASE("Division: a scene has one domain where more would not pay, or places are not known", "[parallel]") {
   const auto bodies = lattice(12);
-  using Motion = certificates::PointMotion<1>;
-  CHECK(domains_wanted<Motion>({}, 2, 19'999) == 1);
-  CHECK(domains_wanted<Motion>({}, 2, 20'000) == 2);
-  CHECK(domains_wanted<Motion>({}, 100, 10'000'000) == 100);
-  CHECK(domains_wanted<Motion>({}, 100'000, 10'000'000'000) == most_domains);
-  CHECK(domains_wanted<Motion>({.domains = 5}, 2, 10) == 5);
-  using Turning = certificates::RigidMotion<1>;
-  CHECK(domains_wanted<Turning>({}, 2, 20'000) == 1);
-  CHECK(domains_wanted<Turning>({.domains = 2}, 1, 20'000) == 2);
+  CHECK(domains_wanted({}, 2, 19'999) == 1);
+  CHECK(domains_wanted({}, 2, 20'000) == 2);
+  CHECK(domains_wanted({}, 100, 10'000'000) == 100);
+  CHECK(domains_wanted({}, 100'000, 10'000'000'000) == most_domains);
+  CHECK(domains_wanted({.domains = 5}, 2, 10) == 5);
+  CHECK(domains_wanted({.domains = 2}, 1, 20'000) == 2);
   CHECK_FALSE(divided(bodies, 0, {}, 2));  // too few bodies
   CHECK_FALSE(divided(bodies, 1e9, {.domains = 2, .halo = 1e-9}, 2));
   CHECK_FALSE(divided(Bodies<certificates::PointMotion<1>>(), 0, {.domains = 2}, 2));
