@@ -65,7 +65,7 @@ double ball_bytes() {
   return bytes_of(parcel) - none;
 }
 /// Memory for a ball that a process stores, and in the world of a domain that knows it (bench_memory, at 0.25).
-constexpr double stored_bytes = 210, world_bytes = 700;
+constexpr double stored_bytes = 178, world_bytes = 640;
 // In a step there is one exchange, which ends with a barrier, and a combination, of sums and of maxima; at the end of a
 // window another exchange.
 constexpr double collectives_of_step = 3, collectives_of_window = 1;
