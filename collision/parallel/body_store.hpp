@@ -55,6 +55,20 @@ class BodyStore {
   /// The slot of a body; `no_body` if it is not stored here.
   BodySlot find(BodySlot number) const { return part_ ? part_->slots.find(number) : number; }
 
+  /// Calls take(number) for what each body rests on, unless these are walls.
+  template <class Take>
+  void each_carrier(const Take& take) const {
+    if constexpr (!turns<Motion>) {
+      for (BodySlot slot = 0; slot < bodies().slots(); ++slot) {
+        const RestingProgress resting = engine().transfer().kept_resting(slot);
+        if (!bodies().alive(slot) || !resting.state()) continue;
+        for (const auto& contact : resting.state()->contacts) {
+          if (contact.b != no_body) take(contact.a == bodies().number(slot) ? contact.b : contact.a);
+        }
+      }
+    }
+  }
+
   /// From now on this stores a part, without bodies at first. Returns the part that it has stored before, if there is
   /// one.
   std::unique_ptr<BodyPart<Motion>> begin_part(double now) {

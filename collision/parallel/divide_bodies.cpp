@@ -132,6 +132,15 @@ void Domains<Motion>::begin(Division division, std::span<const BodySlot> answere
   if (whole) store_.whole().transfer().lend();
 }
 
+template <class Motion>
+bool Domains<Motion>::carriers_are_known() const {
+  bool known = true;
+  store_.each_carrier([&](BodySlot number) {
+    known = known && store_.find(number) != no_body && division_->owner_of(number) == Division::nobody;
+  });
+  return known;
+}
+
 /// Each goes to the processes whose domains are to know it.
 template <class Motion>
 void Domains<Motion>::send_bodies(Engine<Motion>& from, std::span<const BodySlot> answered, double now) {

@@ -103,6 +103,12 @@ template <int Degree>
 Eigen::Vector3d place_at(const certificates::PointMotion<Degree>& path, double t) {
   return path.position(std::max(t, path.start));
 }
+/// Half its acceleration, along an axis.
+template <int Degree>
+double bend_of(const certificates::PointMotion<Degree>& path) {
+  if constexpr (Degree == 2) return path.coefficients[2].cwiseAbs().maxCoeff();
+  return 0;
+}
 /// A box in which the centre is during a stretch of time.
 template <int Degree>
 StaticBox swept_place(const certificates::PointMotion<Degree>& path, double from, double to) {
@@ -188,8 +194,10 @@ DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, 
   const double radius = detail::radius_with_sensors(bodies, slot);
   const bool guided = moved == detail::MovedBy::itself;
   const bool owned = moved == detail::MovedBy::others || (guided && radius <= division.largest_guided);
-  // A body without an owner stays known to the same domains, so its radius counts.
-  division.find_knowers(place, owned ? 0 : guided ? never : radius, knowers);
+  // A body without an owner stays known to the same domains, so its radius counts; and who knows a body that rests on
+  // it has to know it too.
+  const double reach = radius + 2 * division.greatest_radius;
+  division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
   return owned ? static_cast<DomainIndex>(division.partition.cell_of(place)) : Division::nobody;
 }
 
@@ -229,7 +237,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
   Eigen::Array3d high = Eigen::Array3d::Constant(-never), minus_low = high;
   const auto note = [&](const auto& path, double t) {
     speed = std::max(speed, path.velocity(t).cwiseAbs().maxCoeff());
-    if constexpr (Motion::degree == 2) bend = std::max(bend, path.coefficients[2].cwiseAbs().maxCoeff());
+    bend = std::max(bend, bend_of(path));
   };
   const double largest_guided = detail::largest_guided(bodies, scripts, slots, team);
   for (const BodySlot slot : slots) {
@@ -242,6 +250,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
     radius = std::max(radius, bodies[slot].bounding_radius);
     high = high.max(place.array()), minus_low = minus_low.max(-place.array());
     note(path, std::max(now, path.start));
+    bend = std::max(bend, bodies.free_acceleration(slot).cwiseAbs().maxCoeff());  // of what rests, when it does no more
     for (const Motion& piece : scripts.to_come(slot)) note(path_of(piece), path_of(piece).start);
   }
   std::array<std::uint64_t, 1> count{places.size()};

@@ -141,6 +141,7 @@ void Domain<Motion>::run(double until) {
     report_.divisible = false;  // Perhaps of a copy that has gone wrong. If not, the scene as one world throws it too.
   }
   if (!report_.divisible) return;
+  for (const BodySlot slot : engine_.transfer().take_solved()) mark_changed(slot);
   for (Followed& body : followed_) follow(body, until);
   const auto& bodies = engine_.bodies();
   for (BodySlot slot = 0; slot < known_.size() && report_.stayed; ++slot) {
@@ -157,7 +158,7 @@ template <class Motion>
 void Domain<Motion>::note_pieces(double since) {
   const auto& bodies = engine_.bodies();
   for (BodySlot slot = 0; slot < known_.size(); ++slot) {
-    if (bodies.alive(slot) && bodies.path(slot).start >= since) tell_store(slot);
+    if (bodies.alive(slot) && bodies.path(slot).start >= since) mark_changed(slot);
   }
 }
 
@@ -219,9 +220,9 @@ void Domain<Motion>::commit(BodyStore<Motion>& store) const {
 }
 
 template <class Motion>
-void Domain<Motion>::commit_meetings(BodyStore<Motion>& store) const {
+void Domain<Motion>::commit_resting(BodyStore<Motion>& store) const {
   for (const BodySlot slot : changed_) {
-    if (engine_.transfer().has_met(slot)) store.engine().transfer().note_meeting(store.find(number(slot)));
+    store.engine().transfer().keep_resting(store.find(number(slot)), engine_.transfer().resting(slot));
   }
 }
 
@@ -268,15 +269,25 @@ void Domain<Motion>::changed(BodySlot slot, double t) {
   for (const BodySlot sensor : attachments.sensors(slot)) note_change(sensor, t);
 }
 
+/// If this domain tells the store of it.
+template <class Motion>
+void Domain<Motion>::mark_changed(BodySlot slot) {
+  Known& known = known_[slot];
+  const bool tells = known.role == Role::unowned ? first_ : known.role != Role::copy;
+  if (tells && !std::exchange(known.changed, true)) changed_.push_back(slot);
+}
+
 /// What others are to compare, and whether it has stayed where it had to.
 template <class Motion>
 void Domain<Motion>::note_change(BodySlot slot, double t) {
-  tell_store(slot);
+  mark_changed(slot);
   const Known& known = known_[slot];
   if (known.role == Role::unowned) return;
   const Motion& motion = engine_.bodies().motion(slot);
   if (known.role == Role::deep) {
     report_.stayed = report_.stayed && stays_deep(path_of(motion).position(t));
+    // What carries it may accelerate it more than was known when the scene was divided.
+    if (bend_of(path_of(motion)) > division_.greatest_bend) report_.divisible = false;
     return;
   }
   if (known.role == Role::followed) {
@@ -285,14 +296,8 @@ void Domain<Motion>::note_change(BodySlot slot, double t) {
     body.since = t, body.motion = motion;
     if (division_.is_known_to_one(number(slot))) return;
   }
-  fresh_.push_back({number(slot), motion, t, engine_.transfer().progress(slot).turning});
-}
-
-template <class Motion>
-void Domain<Motion>::tell_store(BodySlot slot) {
-  Known& known = known_[slot];
-  const bool tells = known.role == Role::unowned ? first_ : known.role != Role::copy;
-  if (tells && !std::exchange(known.changed, true)) changed_.push_back(slot);
+  fresh_.push_back(
+      {number(slot), motion, t, engine_.transfer().progress(slot).turning, engine_.transfer().resting(slot)});
 }
 
 template <class Motion>
@@ -300,81 +305,6 @@ DomainIndex Domain<Motion>::owner_of(BodySlot slot) const {
   const Known& known = known_[slot];
   if (known.role == Role::unowned) return Division::nobody;
   return known.role == Role::copy ? neighbours_[known.place].domain : static_cast<DomainIndex>(index_);
-}
-
-/// Whether this is the first of the domains that know two bodies. Precondition: it knows both.
-template <class Motion>
-bool Domain<Motion>::is_first_to_know(BodySlot a, BodySlot b) const {
-  const auto of_a = division_.knowers(a), of_b = division_.knowers(b);
-  auto first = of_a.begin();
-  for (auto other = of_b.begin(); *first != *other;) *first < *other ? ++first : ++other;
-  return *first == index_;
-}
-
-/// Events of bodies without an owner are told by one of the domains that know them.
-template <class Motion>
-void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
-  ++report_.computed;
-  const BodySlot a = body_slot(event.a), b = body_slot(event.b);
-  const DomainIndex of_a = owner_of(a), of_b = owner_of(b);
-  const bool fixed = of_a == Division::nobody && of_b == Division::nobody;
-  const bool mine = fixed ? is_first_to_know(number(a), number(b)) : of_a == index_ || of_b == index_;
-  if (!mine) return;
-  const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
-  // Of a shared one the owner of the first body counts it.
-  if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
-  if (!logs_) return;
-  const DomainIndex other = of_a == index_ ? of_b : of_a;
-  put({kind, shared ? other : DomainEvent::nobody, key(event.a), key(event.b), event.contact, event.user_data_a,
-       event.user_data_b});
-}
-
-/// Independent events of one time are put into the order of ids, as a step may have found them in another; those of
-/// contacts, which may follow from each other, are in that order already.
-template <class Motion>
-void Domain<Motion>::put(const DomainEvent& event) {
-  auto place = events_.end();
-  if (event.kind == DomainEvent::Kind::overlap || event.kind == DomainEvent::Kind::wall) {
-    const auto before = [&](const DomainEvent& other) {
-      if (other.kind != event.kind || other.contact.time != event.contact.time) return true;
-      return event.kind == DomainEvent::Kind::wall ? other.a <= event.a : other.order() < event.order();
-    };
-    while (place != events_.begin() && !before(*std::prev(place))) --place;
-  }
-  events_.insert(place, event);
-}
-
-template <class Motion>
-void Domain<Motion>::contact(World&, const PairEvent& event) {
-  record(DomainEvent::Kind::contact, event);
-  const BodySlot a = body_slot(event.a), b = body_slot(event.b);
-  if (!resolves_ || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
-  changed(a, event.contact.time);
-  changed(b, event.contact.time);
-}
-
-template <class Motion>
-void Domain<Motion>::separation(World&, const PairEvent& event) {
-  record(DomainEvent::Kind::separation, event);
-}
-
-template <class Motion>
-void Domain<Motion>::overlap(World&, const PairEvent& event) {
-  record(DomainEvent::Kind::overlap, event);
-}
-
-template <class Motion>
-void Domain<Motion>::wall(World&, const WallEvent& event) {
-  ++report_.computed;
-  const BodySlot slot = body_slot(event.body);
-  const Role role = known_[slot].role;
-  const bool mine = role == Role::unowned ? is_first_to_know(number(slot), number(slot)) : role != Role::copy;
-  if (mine) ++report_.told[static_cast<std::size_t>(DomainEvent::Kind::wall)];
-  if (mine && logs_) {
-    put({DomainEvent::Kind::wall, DomainEvent::nobody, key(event.body), static_cast<BodyId>(event.wall), event.contact,
-         event.user_data});
-  }
-  changed(slot, event.contact.time);
 }
 
 template <class Motion>

@@ -25,8 +25,8 @@ namespace kds::collision {
 
 /// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
-  /// False if something has happened that domains cannot compute: something has come to rest, a pair is let pass, or a
-  /// script takes a body far away at one instant.
+  /// False if something has happened that domains cannot compute: bodies have come to lean on each other, a pair is let
+  /// pass, or a script takes a body far away at one instant.
   bool divisible = true;
   /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;
@@ -101,7 +101,7 @@ class Domain final : private BasicWorldListener<Motion> {
   /// Tells `store` of the bodies of this domain that have changed. Domains may do the first at once, the second one by
   /// one.
   void commit(BodyStore<Motion>& store) const;
-  void commit_meetings(BodyStore<Motion>& store) const;
+  void commit_resting(BodyStore<Motion>& store) const;
   /// Numbers of owned bodies that the last step has changed.
   void append_changed(std::vector<BodySlot>& numbers) const;
   /// The pairs that overlap of which this domain knows all, by numbers; the lower first.
@@ -136,9 +136,17 @@ class Domain final : private BasicWorldListener<Motion> {
   void overlap(World&, const PairEvent& event) override;
   void wall(World&, const WallEvent& event) override;
   void piece(World&, BodyId id) override;
+  void moved(World&, BodyId id) override;
   bool hears_pieces() const override { return false; }
-  void rebound_suppressed(World&, const PairEvent&) override { report_.divisible = false; }
-  void rebound_suppressed_at_wall(World&, const WallEvent&) override { report_.divisible = false; }
+  using Kind = DomainEvent::Kind;
+  void rebound_suppressed(World&, const PairEvent& event) override { rest(Kind::rebound_suppressed, event); }
+  void rests(World&, const PairEvent& event) override { rest(Kind::rests, event); }
+  void wakes(World&, const PairEvent& event) override { rest(Kind::wakes, event); }
+  void rebound_suppressed_at_wall(World&, const WallEvent& event) override {
+    rest(Kind::rebound_suppressed_at_wall, event);
+  }
+  void rests_at_wall(World&, const WallEvent& event) override { rest(Kind::rests_at_wall, event); }
+  void wakes_at_wall(World&, const WallEvent& event) override { rest(Kind::wakes_at_wall, event); }
   void passes(World&, const PairEvent&) override { report_.divisible = false; }
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
@@ -151,10 +159,15 @@ class Domain final : private BasicWorldListener<Motion> {
   DomainIndex owner_of(BodySlot slot) const;
   bool is_first_to_know(BodySlot a, BodySlot b) const;
   void record(DomainEvent::Kind kind, const PairEvent& event);
+  void rest(DomainEvent::Kind kind, const PairEvent& event);
+  void rest(DomainEvent::Kind kind, const WallEvent& event);
+  bool tells_of_wall(BodySlot slot) const;
+  void begin_cause(DomainEvent::Cause::Phase phase, BodyId a, BodyId b, double t);
+  DomainEvent::Cause cause_at(double t);
   void put(const DomainEvent& event);
+  void mark_changed(BodySlot slot);
   void changed(BodySlot slot, double t);
   void note_change(BodySlot slot, double t);
-  void tell_store(BodySlot slot);
   void note_pieces(double since);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
@@ -176,6 +189,9 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
+  DomainEvent::Cause cause_;     ///< the last event from which others may follow
+  double caused_at_ = -never;    ///< s
+  std::uint64_t ends_seen_ = 0;  ///< RestingEvent::count, then
   std::vector<BodySlot> wrong_;
   BodyMoves moves_;
   std::vector<NeighbourDomain> neighbours_;

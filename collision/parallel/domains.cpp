@@ -148,7 +148,7 @@ void Domains<Motion>::commit(double now) {
   sort_overlaps();
   in_each([&](Domain<Motion>& domain) { domain.commit(store_); });
   for (const auto& domain : domains_) {
-    domain->commit_meetings(store_);
+    domain->commit_resting(store_);
     if (team_.count() > 1) domain->append_changed(changed_);
   }
   copies_made_ = 0;
@@ -288,7 +288,7 @@ template <class Motion>
 BodyNews<Motion> Domains<Motion>::news_of(BodySlot number) const {
   const Engine<Motion>& engine = store_.engine();
   const BodySlot slot = store_.find(number);
-  return {number, engine.transfer().progress(slot), engine.transfer().has_met(slot)};
+  return {number, engine.transfer().progress(slot), engine.transfer().kept_resting(slot)};
 }
 
 /// Notes who owns and knows a body from now on, and which domains of this process are to let it go and to take it in.
@@ -325,7 +325,7 @@ void Domains<Motion>::hear(const WindowNews<Motion>& news) {
   for (const BodyNews<Motion>& body : news.bodies) {
     const BodySlot slot = store_.find(body.number);
     store_.engine().transfer().go_on_from(slot, body.progress);
-    if (body.met) store_.engine().transfer().note_meeting(slot);
+    store_.engine().transfer().keep_resting(slot, body.resting);
   }
   overlaps_.insert(overlaps_.end(), news.overlaps.begin(), news.overlaps.end());
 }

@@ -60,6 +60,8 @@ class Domains {
              double now);
   /// The pairs that overlap of which this process knows.
   std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
+  /// Whether each body that rests on others rests on such as have no owner: so each domain that knows it knows these.
+  bool carriers_are_known() const;
   /// Ends the domains, and gives the world of each process all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
   /// Ends the domains without bringing their bodies together. The caller then puts other bodies into the stores.
@@ -155,6 +157,7 @@ class Domains {
   // saved_parts.cpp
   std::vector<BodySlot> with_attached(std::span<const BodySlot> slots) const;
   bool answers_for_stored(BodySlot number) const;
+  bool carriers_are_there();
   void check_attached(BodySlot sensor, BodySlot owner) const;
 
   const WorldOptions options_;

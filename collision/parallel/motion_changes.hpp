@@ -4,6 +4,7 @@
 #include "certificates/point_motion.hpp"
 #include "certificates/turning/rigid_motion.hpp"
 #include "collision/body_id.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 
 #include <algorithm>
@@ -14,17 +15,18 @@
 
 namespace kds::collision {
 
-/// A body, by its number, has another motion from a time on.
+/// A body, by its number, has another motion from a time on, or something of it begins or ceases to rest.
 template <class Motion>
 struct MotionChange {
   BodySlot number;
   Motion motion;
   double time;  ///< s
   [[no_unique_address]] typename Tumbling<Motion>::Progress turning{};
+  [[no_unique_address]] typename RestingPart<Motion>::Progress resting{};
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(number, motion, time, turning);
+    archive(number, motion, time, turning, resting);
   }
 };
 
@@ -42,7 +44,8 @@ bool same_bits(const certificates::RigidMotion<Degree>& a, const certificates::R
 }
 template <class Motion>
 bool same_bits(const MotionChange<Motion>& a, const MotionChange<Motion>& b) {
-  return a.time == b.time && same_bits(a.motion, b.motion) && same_bits(a.turning, b.turning);
+  return a.time == b.time && same_bits(a.motion, b.motion) && same_bits(a.turning, b.turning) &&
+         same_bits(a.resting, b.resting);
 }
 
 template <class Motion>

@@ -43,11 +43,11 @@ template <class Motion>
 struct BodyNews {
   BodySlot number;
   BodyProgress<Motion> progress;
-  bool met;
+  typename Transfer<Motion>::Resting resting;
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(number, progress, met);
+    archive(number, progress, resting);
   }
 };
 

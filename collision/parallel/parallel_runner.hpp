@@ -135,7 +135,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     do {
       if (untold_.any()) {
         finish_step(t);
-      } else if (!divided() && !divide()) {
+      } else if (!divided() && !divide(t)) {
         run_whole(t);
       } else {
         run_window(t);
@@ -196,8 +196,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   // Division.
 
-  /// Divides the scene; false if it is to be run as one world.
-  bool divide() {
+  /// Divides the scene, which is to be run up to t; false if it is to be run as one world.
+  bool divide(double t) {
     if (domains_wanted(parallel_, workers(), world_.size()) < 2) {
       stretch_ = 0;
       return false;
@@ -206,7 +206,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       const kds::detail::RaisedFlag telling(telling_);
       world_.advance_to(now_);
     }
-    if (!team_.all(domains_.store().engine().transfer().is_divisible())) return false;
+    if (!team_.all(domains_.store().engine().transfer().is_divisible())) {
+      constexpr double first_stretch = 0x1p-6;  // of the time that there is; later ones are longer
+      if (stretch_ == 0) stretch_ = first_stretch * (t - now_);
+      return false;
+    }
     const std::vector<BodySlot> answered = domains_.answered();
     auto division = find_division(answered);
     if (!division) return false;
@@ -217,6 +221,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     auto overlaps = apart() ? domains_.take_overlaps() : store_.transfer().overlaps();
     if (!apart()) store_.transfer().set_aside();
     domains_.begin(std::move(*division), answered, std::move(overlaps), logs_, now_);
+    if (!team_.all(domains_.carriers_are_known())) {
+      gather(now_);
+      return false;
+    }
     begin_window();
     domains_.make(now_);
     ++counters_.divisions;
@@ -344,6 +352,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     auto division = find_division(answered);
     if (!division) return gather(now_);
     domains_.begin(std::move(*division), answered, domains_.take_overlaps(), logs_, now_);
+    if (!team_.all(domains_.carriers_are_known())) return gather(now_);
     begin_window();
     domains_.make(now_);
     ++counters_.divisions;

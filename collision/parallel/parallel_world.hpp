@@ -26,14 +26,13 @@ class ParallelListener {
   virtual void overlap(const PairEvent&) {}
   virtual void wall(const WallEvent&) {}
   virtual void timer(TimerId, double /*time*/) {}  ///< a timer that was set in whole() has rung
-  // These happen only while the scene is run as one world.
   virtual void rebound_suppressed(const PairEvent&) {}
   virtual void rebound_suppressed_at_wall(const WallEvent&) {}
   virtual void rests(const PairEvent&) {}
   virtual void rests_at_wall(const WallEvent&) {}
   virtual void wakes(const PairEvent&) {}
   virtual void wakes_at_wall(const WallEvent&) {}
-  virtual void passes(const PairEvent&) {}
+  virtual void passes(const PairEvent&) {}  ///< only while the scene is run as one world
 };
 
 /// A world of many bodies, divided into domains: cells of space, each with a world of its own that knows the bodies in
@@ -42,9 +41,9 @@ class ParallelListener {
 /// The events are those of a World with the same bodies, in the same order, the same bits, whatever the number of
 /// threads and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
 ///
-/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; something rests on something,
-/// or bodies that turn are about to; meshes that bend; box functions; response `callback`; reports of pairs or of
-/// pieces. What this costs is in docs/parallel.md.
+/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; some lean on each other (what
+/// lies on fixed bodies or leans on walls is divided, docs/parallel.md), or bodies that turn come to rest; meshes that
+/// bend; box functions; response `callback`; reports of pairs or of pieces. What this costs is in docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own

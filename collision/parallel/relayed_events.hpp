@@ -15,13 +15,31 @@ namespace kds::collision {
 
 /// Tells a listener of an event that a domain has recorded.
 inline void relay(const DomainEvent& event, ParallelListener& listener) {
-  if (event.kind == DomainEvent::Kind::wall) {
-    return listener.wall({event.a, static_cast<int>(event.b), event.contact, event.user_data_a});
-  }
+  using Kind = DomainEvent::Kind;
+  const WallEvent wall{event.a, static_cast<int>(event.b), event.contact, event.user_data_a};
   const PairEvent pair{event.a, event.b, event.contact, event.user_data_a, event.user_data_b};
-  if (event.kind == DomainEvent::Kind::contact) listener.contact(pair);
-  if (event.kind == DomainEvent::Kind::separation) listener.separation(pair);
-  if (event.kind == DomainEvent::Kind::overlap) listener.overlap(pair);
+  switch (event.kind) {
+    case Kind::overlap:
+      return listener.overlap(pair);
+    case Kind::wall:
+      return listener.wall(wall);
+    case Kind::contact:
+      return listener.contact(pair);
+    case Kind::separation:
+      return listener.separation(pair);
+    case Kind::rebound_suppressed:
+      return listener.rebound_suppressed(pair);
+    case Kind::rebound_suppressed_at_wall:
+      return listener.rebound_suppressed_at_wall(wall);
+    case Kind::wakes:
+      return listener.wakes(pair);
+    case Kind::wakes_at_wall:
+      return listener.wakes_at_wall(wall);
+    case Kind::rests:
+      return listener.rests(pair);
+    case Kind::rests_at_wall:
+      return listener.rests_at_wall(wall);
+  }
 }
 
 /// Passes on what a World tells while the scene is run as one, and counts it. Makes the changes for which the listener

@@ -29,12 +29,13 @@ struct SavedBodies {
     archive.each(overlaps, [&](Overlap& overlap) { archive(overlap.a, overlap.b, overlap.passes_at); });
   }
 
-  /// Throws std::runtime_error, naming what is wrong, unless they may be bodies of a scene of which this is saved, too.
-  void check(const typename Engine<Motion>::Image& rest) const {
+  /// Throws std::runtime_error, naming what is wrong, unless they may be bodies of a scene with these options, of which
+  /// this is saved too.
+  void check(const typename Engine<Motion>::Image& rest, const WorldOptions& options) const {
     const auto& numbers = parcel.numbers;
     const auto& bodies = parcel.bodies;
     if (bodies.bodies.size() != numbers.size() || parcel.to_come.size() != numbers.size() ||
-        parcel.met.size() != numbers.size() || (turns<Motion> && parcel.turning.size() != numbers.size())) {
+        parcel.resting.size() != numbers.size() || (turns<Motion> && parcel.turning.size() != numbers.size())) {
       image::fail("bodies: lists about them are of different lengths");
     }
     bodies.check(rest.now);
@@ -51,6 +52,10 @@ struct SavedBodies {
         turning.of.push_back(progress.body() ? std::optional(*progress.body()) : std::nullopt);
       }
       turning.check(bodies, rest.now);
+    } else {
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (parcel.resting[i].state()) check_resting(i, *parcel.resting[i].state(), rest, options);
+      }
     }
     for (std::size_t i = 0; i < overlaps.size(); ++i) {
       const Overlap& overlap = overlaps[i];
@@ -58,6 +63,37 @@ struct SavedBodies {
           rest.bodies.before(overlap.a, overlap.b) && std::max(overlap.a, overlap.b) < rest.bodies.elsewhere.slots,
           "overlaps", i, "is not of two bodies");
       image::require(image::is_past(overlap.passes_at, rest.now), "overlaps", i, "passes at a time after now");
+    }
+  }
+
+ private:
+  /// That what it rests on is there and fixed is seen when all bodies have been read.
+  void check_resting(std::size_t i, const RestingProgress::State& state, const typename Engine<Motion>::Image& rest,
+                     const WorldOptions& options) const {
+    const auto need = [i](bool right, const char* what) { image::require(right, "resting", i, what); };
+    const double now = rest.now;
+    const bool fixed = parcel.bodies.bodies[i].inverse_mass == 0;
+    const bool spans = state.span_ends != -never;
+    need(parcel.bodies.bodies[i].entered, "is of a body that has not entered");
+    need(state.releases.size() == state.contacts.size(), "has not as many releases as contacts");
+    need(!spans || (image::is_to_come(state.span_ends, now) && !fixed && options.response == Response::elastic),
+         "is in a span that is over, or where there are none");
+    need(state.calm_since == never || image::is_past(state.calm_since, now), "is not calm yet");
+    need(image::is_to_come(state.looked_at, now) && (!spans || state.looked_at <= state.span_ends),
+         "has a span that never ends, or has ended");
+    for (std::size_t k = 0; k < state.contacts.size(); ++k) {
+      const auto& contact = state.contacts[k];
+      need(contact.alive && (contact.a == parcel.numbers[i] || contact.b == parcel.numbers[i]), "is of other bodies");
+      if (contact.b == no_body) {
+        need(options.walls && contact.wall >= 0 && contact.wall < 6, "is at no wall");
+      } else {
+        const BodySlot last = std::max(contact.a, contact.b);
+        need(contact.wall == -1 && last < rest.bodies.elsewhere.slots && rest.bodies.before(contact.a, contact.b),
+             "is not of two bodies");
+        need(!fixed && options.response == Response::elastic, "is of two bodies in a mode without resting contacts");
+      }
+      detail::check_numbers(contact, now, need);
+      need(image::is_to_come(state.releases[k], now), "is to be let go before now");
     }
   }
 };

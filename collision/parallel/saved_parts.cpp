@@ -97,7 +97,7 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
       kds::detail::Reader reader(block);
       reader(saved);
       kds::detail::Reader::require(reader.at_end(), "there is more in a part than bodies");
-      saved.check(rest);
+      saved.check(rest, options_);
       store_.store(saved.parcel);
       for (const BodySlot number : saved.parcel.numbers) ++found[0], found[1] += number_hash(number);
       overlaps.insert(overlaps.end(), saved.overlaps.begin(), saved.overlaps.end());
@@ -119,14 +119,16 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
   }
   const bool loaded = team_.all(!failure);
   if (loaded) team_.combine(found, {});
+  const bool carried = loaded && carriers_are_there();
   const auto& elsewhere = rest.bodies.elsewhere;
   const std::array<std::uint64_t, 4> expected{elsewhere.bodies, elsewhere.numbers, rest.bodies.attached.size(),
                                               2 * rest.bodies.ignored.size()};
-  if (found != expected || !loaded) {
+  if (found != expected || !carried) {
     store_.put_part(std::move(before));
     if (failure) std::rethrow_exception(failure);
-    throw std::runtime_error(loaded ? "snapshot: the parts have not the bodies of the scene"
-                                    : "snapshot: another process has not loaded its part");
+    throw std::runtime_error(!loaded             ? "snapshot: another process has not loaded its part"
+                             : found != expected ? "snapshot: the parts have not the bodies of the scene"
+                                                 : "snapshot: a body rests on one that is not there, or is not fixed");
   }
   leave();
   meshes_ = rest.bodies.meshes;
@@ -135,6 +137,34 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
     if (store_.find(sensor) != no_body) store_.engine().transfer().attach(store_.find(sensor), store_.find(owner));
   }
   overlaps_ = std::move(overlaps);
+}
+
+/// Whether what bodies of any process rest on is stored in one of them, and is fixed.
+template <class Motion>
+bool Domains<Motion>::carriers_are_there() {
+  std::vector<BodySlot> wanted;
+  store_.each_carrier([&](BodySlot number) { wanted.push_back(number); });
+  std::sort(wanted.begin(), wanted.end());
+  wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+  std::array<std::uint64_t, 2> counts{wanted.size(), 0};  // of those that are wanted, and of those that are there
+  const auto look = [&](const std::vector<BodySlot>& numbers) {
+    for (const BodySlot number : numbers) {
+      const BodySlot slot = store_.find(number);
+      if (slot != no_body && store_.bodies().entered(slot) && store_.bodies().fixed(slot)) ++counts[1];
+    }
+  };
+  look(wanted);
+  Letters letters;
+  for (std::size_t process = 0; process < team_.count() && !wanted.empty(); ++process) {
+    if (process != team_.rank()) letters.to(process)(wanted);
+  }
+  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+    std::vector<BodySlot> heard;
+    reader(heard);
+    look(heard);
+  });
+  team_.combine(counts, {});
+  return counts[0] == counts[1];
 }
 
 /// Throws std::runtime_error if a sensor of this process cannot be one that is attached to a body of this process.

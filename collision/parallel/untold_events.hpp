@@ -59,10 +59,11 @@ class UntoldEvents {
   }
 
  private:
-  /// Whether the next timer is told before an event: at one time overlaps are told first.
+  /// Whether the next timer is told before an event: at one time what follows from pieces of motion is told first.
   bool rings_before(const DomainEvent& event) const {
     const double time = timers_.front().time;
-    return time < event.contact.time || (time == event.contact.time && event.kind != DomainEvent::Kind::overlap);
+    return time < event.contact.time ||
+           (time == event.contact.time && event.origin().phase != DomainEvent::Cause::Phase::pieces);
   }
   void note_told(double time) { ++told_, told_until_ = time; }
 

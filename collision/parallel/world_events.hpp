@@ -5,11 +5,12 @@
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/parallel/domain_sets.hpp"
 
+#include <array>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <queue>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,8 +18,19 @@ namespace kds::collision {
 
 /// An event as a domain records it. Bodies by their ids in the scene.
 struct DomainEvent {
-  /// In the order in which events of one time are told.
-  enum class Kind : std::uint8_t { overlap, wall, contact, separation } kind;
+  enum class Kind : std::uint8_t {
+    overlap,
+    wall,
+    contact,
+    separation,
+    // What follows from an event of the same time.
+    rebound_suppressed,
+    rebound_suppressed_at_wall,
+    wakes,
+    wakes_at_wall,
+    rests,
+    rests_at_wall
+  } kind;
   static constexpr DomainIndex nobody = no_domain;
   DomainIndex other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
   BodyId a;
@@ -27,15 +39,55 @@ struct DomainEvent {
   std::uint64_t user_data_a = 0;  ///< of the bodies
   std::uint64_t user_data_b = 0;
 
+  /// The event from which another one follows. It need not be told: pieces of motion are not.
+  struct Cause {
+    /// In the order in which a world processes what is due at one time.
+    enum class Phase : std::uint8_t { pieces, walls, ends_of_rest, spans, contacts } phase = Phase::pieces;
+    BodyId a = 0, b = 0;  ///< by which those of one phase come; of pieces, which begin together, always the same
+
+    friend auto operator<=>(const Cause&, const Cause&) = default;
+  };
+  Cause cause{};  ///< of what follows
+
+  bool follows() const { return kind > Kind::separation; }
+  bool is_at_wall() const {
+    return kind == Kind::wall || kind == Kind::rebound_suppressed_at_wall || kind == Kind::wakes_at_wall ||
+           kind == Kind::rests_at_wall;
+  }
+
   template <class Archive>
   void archive(Archive& archive) {
     archive(kind, other_owner, a, b, contact, user_data_a, user_data_b);
+    if (follows()) archive(cause.phase, cause.a, cause.b);
   }
 
-  /// Contacts and separations of one time come by their bodies alone.
-  auto order() const {
-    const int phase = kind == Kind::overlap ? 0 : kind == Kind::wall ? 1 : 2;
-    return std::tuple(contact.time, phase, a, b);
+  /// What it follows from, or what follows from it has as its cause.
+  Cause origin() const {
+    if (follows()) return cause;
+    if (kind == Kind::overlap) return {};
+    return {kind == Kind::wall ? Cause::Phase::walls : Cause::Phase::contacts, a, b};
+  }
+
+  /// What follows from an event comes right after it, in the order that WorldListener states. Contacts and separations
+  /// of one time come by their bodies alone.
+  struct Order {
+    double time;
+    Cause origin;
+    int kind;
+    BodyId a, b;
+    int wall;
+
+    friend auto operator<=>(const Order&, const Order&) = default;
+  };
+  Order order() const {
+    constexpr std::array<int, 10> places{4, 0, 0, 0, 1, 1, 2, 2, 3, 3};  // by kind
+    const bool at_wall = is_at_wall();
+    return {contact.time,
+            origin(),
+            places[static_cast<std::size_t>(kind)],
+            a,
+            at_wall ? a : b,
+            at_wall ? static_cast<int>(b) : -1};
   }
 };
 
@@ -86,10 +138,10 @@ class BasicEventMerge {
 
  private:
   struct Possible {
-    std::tuple<double, int, BodyId, BodyId> order;
+    DomainEvent::Order order;
     std::size_t domain;
     bool operator<(const Possible& other) const {
-      return std::tie(other.order, other.domain) < std::tie(order, domain);
+      return other.order < order || (other.order == order && other.domain < domain);
     }
   };
 

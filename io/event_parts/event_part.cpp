@@ -96,7 +96,10 @@ void EventPart::on_step(const kds::collision::StepEvents& events) {
   for (const auto& log : events.logs) {
     const std::size_t before = step_.size();
     append_bytes(step_, std::uint64_t{0});
-    for (const auto& event : log) append_record(step_, to_event(event), event.other_owner);
+    for (const auto& event : log) {
+      if (!is_in_files(event)) continue;
+      append_record(step_, to_event(event), event.other_owner, event.follows() ? &event.cause : nullptr);
+    }
     const std::uint64_t length = step_.size() - before - sizeof length;
     std::memcpy(step_.data() + before, &length, sizeof length);
   }

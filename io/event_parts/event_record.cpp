@@ -1,10 +1,13 @@
 #include "io/event_parts/event_record.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 namespace kds::io {
 namespace {
@@ -16,6 +19,7 @@ using kds::collision::Feature;
 constexpr std::uint8_t kinds = 0x0f;
 constexpr std::uint8_t has_features = 0x10;
 constexpr std::uint8_t has_other_owner = 0x20;
+constexpr std::uint8_t has_cause = 0x40;
 
 template <class T>
 void put(std::string& bytes, T value) {
@@ -29,29 +33,33 @@ void require(bool right) {
   if (!right) throw std::runtime_error("has an event that cannot be one of this scene");
 }
 
-EventKind to_event_kind(DomainEvent::Kind kind) {
-  switch (kind) {
-    case DomainEvent::Kind::overlap:
-      return EventKind::overlap;
-    case DomainEvent::Kind::wall:
-      return EventKind::wall;
-    case DomainEvent::Kind::contact:
-      return EventKind::contact;
-    case DomainEvent::Kind::separation:
-      break;
-  }
-  return EventKind::separation;
+/// What a domain records, and what the file calls it.
+using DomainKind = DomainEvent::Kind;
+constexpr std::array<std::pair<DomainKind, EventKind>, 8> kinds_of_domains{
+    {{DomainKind::overlap, EventKind::overlap},
+     {DomainKind::wall, EventKind::wall},
+     {DomainKind::contact, EventKind::contact},
+     {DomainKind::separation, EventKind::separation},
+     {DomainKind::wakes, EventKind::wake},
+     {DomainKind::wakes_at_wall, EventKind::wake_at_wall},
+     {DomainKind::rests, EventKind::rest},
+     {DomainKind::rests_at_wall, EventKind::rest_at_wall}}};
+
+EventKind to_event_kind(DomainKind kind) {
+  return std::ranges::find(kinds_of_domains, kind, &std::pair<DomainKind, EventKind>::first)->second;
 }
 
-DomainEvent::Kind to_domain_kind(EventKind kind) {
-  for (const auto of_domain : {DomainEvent::Kind::overlap, DomainEvent::Kind::wall, DomainEvent::Kind::contact}) {
-    if (to_event_kind(of_domain) == kind) return of_domain;
-  }
-  require(kind == EventKind::separation);
-  return DomainEvent::Kind::separation;
+DomainKind to_domain_kind(EventKind kind) {
+  const auto* const found = std::ranges::find(kinds_of_domains, kind, &std::pair<DomainKind, EventKind>::second);
+  require(found != kinds_of_domains.end());
+  return found->first;
 }
 
 }  // namespace
+
+bool is_in_files(const DomainEvent& event) {
+  return event.kind != DomainKind::rebound_suppressed && event.kind != DomainKind::rebound_suppressed_at_wall;
+}
 
 Event to_event(const DomainEvent& event) {
   const auto& c = event.contact;
@@ -66,12 +74,13 @@ Event to_event(const DomainEvent& event) {
           c.feature_b};
 }
 
-void append_record(std::string& bytes, const Event& event, std::size_t other_owner) {
+void append_record(std::string& bytes, const Event& event, std::size_t other_owner, const DomainEvent::Cause* cause) {
   const bool shared = other_owner != DomainEvent::nobody;
   const bool features = event.feature_a != Feature{} || event.feature_b != Feature{};
   put(bytes, static_cast<std::uint8_t>(static_cast<unsigned>(event.kind) | (features ? has_features : 0u) |
-                                       (shared ? has_other_owner : 0u)));
+                                       (shared ? has_other_owner : 0u) | (cause ? has_cause : 0u)));
   if (shared) put(bytes, static_cast<std::uint32_t>(other_owner));
+  if (cause) put(bytes, static_cast<std::uint8_t>(cause->phase)), put(bytes, cause->a), put(bytes, cause->b);
   put(bytes, event.time), put(bytes, event.a), put(bytes, event.b);
   for (const Eigen::Vector3d* v : {&event.point, &event.normal}) {
     for (int d = 0; d < 3; ++d) put(bytes, (*v)[d]);
@@ -102,11 +111,19 @@ Records Records::part(std::size_t length) {
 
 Records::Record Records::record() {
   const auto first = take<std::uint8_t>();
-  require((first & kinds) < event_kind_names.size() && (first & ~(kinds | has_features | has_other_owner)) == 0);
-  Record record{{}, DomainEvent::nobody};
+  require((first & kinds) < event_kind_names.size() &&
+          (first & ~(kinds | has_features | has_other_owner | has_cause)) == 0);
+  Record record{{}, DomainEvent::nobody, {}};
   Event& event = record.event;
   event.kind = static_cast<EventKind>(first & kinds);
   if ((first & has_other_owner) != 0) record.other_owner = take<std::uint32_t>();
+  if ((first & has_cause) != 0) {
+    const auto phase = take<std::uint8_t>();
+    require(phase <= static_cast<std::uint8_t>(DomainEvent::Cause::Phase::contacts));
+    record.cause.phase = static_cast<DomainEvent::Cause::Phase>(phase);
+    record.cause.a = take<kds::collision::BodyId>();
+    record.cause.b = take<kds::collision::BodyId>();
+  }
   event.time = take<double>();
   event.a = take<std::uint32_t>();
   event.b = take<std::uint32_t>();
@@ -128,13 +145,16 @@ Records::Record Records::record() {
 Event Records::event() { return record().event; }
 
 DomainEvent Records::event_of(std::size_t domain, std::size_t domains) {
-  const auto [event, other_owner] = record();
+  const auto [event, other_owner, cause] = record();
   require(other_owner == DomainEvent::nobody || (other_owner < domains && other_owner != domain));
   return {to_domain_kind(event.kind),
           static_cast<decltype(DomainEvent::other_owner)>(other_owner),
           event.a,
           event.b,
-          {event.time, event.point, event.normal, event.feature_a, event.feature_b}};
+          {event.time, event.point, event.normal, event.feature_a, event.feature_b},
+          0,
+          0,
+          cause};
 }
 
 }  // namespace kds::io

@@ -10,11 +10,17 @@
 
 namespace kds::io {
 
-/// As a domain records it. Its bodies must be those of the scene: nothing was added or removed since.
+/// Whether files have events of this kind.
+bool is_in_files(const kds::collision::DomainEvent& event);
+
+/// As a domain records it, of a kind that files have. Its bodies must be those of the scene: nothing was added or
+/// removed since.
 Event to_event(const kds::collision::DomainEvent& event);
 
-/// An event of the log of a domain, or of a scene that is run as one world, which has no other owner.
-void append_record(std::string& bytes, const Event& event, std::size_t other_owner);
+/// An event of the log of a domain, or of a scene that is run as one world, which has no other owner. `cause`: of those
+/// that follow from another, in the log of a domain; else null.
+void append_record(std::string& bytes, const Event& event, std::size_t other_owner,
+                   const kds::collision::DomainEvent::Cause* cause = nullptr);
 
 /// Reads records, one after another, and checks that they are of a scene of so many bodies.
 class Records {
@@ -33,6 +39,7 @@ class Records {
   struct Record {
     Event event;
     std::size_t other_owner;
+    kds::collision::DomainEvent::Cause cause;
   };
   Record record();
   template <class T>

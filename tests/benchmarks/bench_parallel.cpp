@@ -1,18 +1,19 @@
-// What a scene in domains costs beside one world: gases of balls, and of bricks that precess, with one thread and with
-// two.
+// What a scene in domains costs beside one world: gases of balls, and of bricks that precess, and balls that lie on a
+// floor and roll into each other, with one thread and with two.
 //
 //     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
 //
 // plot_parallel.gp draws it.
 //
-// The bodies (elastic_gas.hpp) run until each has had some contacts; of bricks an eighth as many, for as long.
-// One world and the same scene in domains take turns; the best of the rounds counts. The number of contacts and a hash
-// of all of them must be the same.
+// The bodies (elastic_gas.hpp, table_of_balls.hpp) run until each has had some contacts; of bricks an eighth as many,
+// for as long; on floors a third as many. One world and the same scene in domains take turns; the best of the rounds
+// counts. The number of contacts and a hash of all of them must be the same.
 
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/elastic_gas.hpp"
+#include "tests/benchmarks/table_of_balls.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 
 #include <sys/resource.h>
@@ -105,9 +106,9 @@ void run(World& world, const Bodies& bodies, double end, Time& time) {
 }
 
 template <class Motion>
-void measure(std::ofstream& csv, const char* kind, std::size_t bodies, double packing, double end) {
-  const ElasticGas scene = kds::benchmarks::elastic_gas(bodies, packing);
-  const auto descriptions = bodies_of(scene, Motion());
+void measure(std::ofstream& csv, const char* kind, const WorldOptions& options,
+             const std::vector<BasicBodyDescription<Motion>>& descriptions, double packing, double end) {
+  const std::size_t bodies = descriptions.size();
   Time whole;
   struct Way {
     std::size_t threads, domains;
@@ -119,11 +120,11 @@ void measure(std::ofstream& csv, const char* kind, std::size_t bodies, double pa
   const int rounds = bodies >= 300'000 ? 2 : 3;
   for (int round = 0; round < rounds; ++round) {
     WorldHash<Motion> right;
-    BasicWorld<Motion> world(scene.options, &right);
+    BasicWorld<Motion> world(options, &right);
     run(world, descriptions, end, whole);
     for (Way& way : ways) {
       DividedHash hash;
-      BasicParallelWorld<Motion> divided(scene.options, {.threads = way.threads, .domains = way.domains}, &hash);
+      BasicParallelWorld<Motion> divided(options, {.threads = way.threads, .domains = way.domains}, &hash);
       run(divided, descriptions, end, way.time);
       way.counters = divided.counters();
       if (hash.of.hash != right.of.hash) throw std::runtime_error("a scene in domains has other contacts");
@@ -156,8 +157,12 @@ int main(int argc, char** argv) {
     if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};
     for (const double packing : {0.25, 0.01}) {
       for (const std::size_t bodies : sizes) {
-        measure<Balls>(csv, "balls", bodies, packing, end_of(packing));
-        measure<Bricks>(csv, "bricks", bodies / 8, packing, end_of(packing));
+        const auto balls = kds::benchmarks::elastic_gas(bodies, packing);
+        measure(csv, "balls", balls.options, bodies_of(balls, Balls()), packing, end_of(packing));
+        const auto bricks = kds::benchmarks::elastic_gas(bodies / 8, packing);
+        measure(csv, "bricks", bricks.options, bodies_of(bricks, Bricks()), packing, end_of(packing));
+        const auto table = kds::benchmarks::table_of_balls(bodies / 3, packing);
+        measure(csv, "table", table.options, table.bodies, packing, 2 * end_of(packing));
       }
     }
   } catch (const std::exception& error) {

@@ -373,6 +373,13 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
     return DomainEvent{DomainEvent::Kind::contact, static_cast<decltype(DomainEvent::other_owner)>(other), a, b, {t}};
   };
   CHECK(merged({{event(1, 1, 2, 3)}, {event(1, 0, 2, 3)}}).empty());
+  auto rests = event(1, DomainEvent::nobody, 2, 3);
+  rests.kind = DomainEvent::Kind::rests;
+  rests.cause = {DomainEvent::Cause::Phase::contacts, 1, 2};
+  auto suppressed = rests;  // of a kind that files have not
+  suppressed.kind = DomainEvent::Kind::rebound_suppressed;
+  CHECK(merged({{event(1, DomainEvent::nobody, 1, 2), suppressed, rests}, {event(1, DomainEvent::nobody, 1, 3)}})
+            .empty());
   const std::string first = part_path(file, 0) + ": part of events: ",
                     cannot_be = "has an event that cannot be one of ";
   const std::string disagree = first + "does not agree with the others about what has happened";

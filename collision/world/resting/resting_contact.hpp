@@ -2,10 +2,13 @@
 #pragma once
 
 #include "collision/world/bodies.hpp"
+#include "collision/world/body_keys.hpp"
+#include "collision/world/image_tools.hpp"
 #include "kds/certificate.hpp"
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstdint>
 
 namespace kds::collision::detail {
@@ -40,6 +43,37 @@ struct RestingContact {
   // For walks over contacts that lean on each other.
   std::uint64_t seen = 0;   ///< the last walk that has visited it
   std::uint32_t place = 0;  ///< its place in that walk
+};
+
+/// All of it but what walks need.
+template <class Archive>
+void archive_members(Archive& archive, RestingContact& c) {
+  archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.depth, c.gap, c.room,
+          c.since, c.aim, c.ends);
+  image::vector(archive, c.normal), image::vector(archive, c.point);
+}
+
+/// Calls need(right, what) for each of the numbers that has to be finite, or in some range.
+template <class Need>
+void check_numbers(const RestingContact& c, double now, const Need& need) {
+  /// How far a normal may be from unit length: far above the rounding of a normalisation.
+  constexpr double normal_rounding = 0x1p-40;
+  need(std::abs(c.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
+  need(std::isfinite(c.push) && std::isfinite(c.solved), "its push or rate is not finite");
+  need(c.depth >= 0 && std::isfinite(c.depth), "its depth is negative or not finite");
+  need(c.point.allFinite(), "its point is not finite");
+  need(std::isfinite(c.gap) && c.room >= 0 && std::isfinite(c.room) && std::isfinite(c.aim) &&
+           image::is_past(c.since, now),
+       "its gap is not finite, or not known yet");
+}
+
+/// What of the part that knows what rests happened last by itself, at the end of a contact or of a span: what is told
+/// next may follow from that.
+struct RestingEvent {
+  std::uint64_t count = 0;  ///< of all so far
+  double time = -never;     ///< s
+  bool is_span = false;     ///< at one time contacts end before spans
+  PairKey rank{};           ///< of those of one kind and time the least comes first
 };
 
 }  // namespace kds::collision::detail

@@ -65,7 +65,10 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const 
 
 template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
-  if (bodies_.numbered()) throw RestsInPart();
+  const bool leans = contact.b != no_body && !(bodies_.fixed(contact.a) || bodies_.fixed(contact.b));
+  if (bodies_.numbered() && (leans || (contact.b != no_body && (clustered(contact.a) || clustered(contact.b))))) {
+    throw RestsInPart();
+  }
   for (const Slot slot : member(contact.a).contacts) {
     Contact& other = contacts_[slot];
     if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
@@ -74,6 +77,16 @@ void RestingContacts<Motion>::add(const Contact& contact) {
     other.fresh = true;
     return;
   }
+  const Slot slot = give_slot(contact);
+  contacts_[slot].alive = true;
+  contacts_[slot].fresh = true;
+  contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
+  listener_->tell_resting(true, contacts_[slot]);
+}
+
+/// A slot with the contact, which its bodies list.
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::give_slot(const Contact& contact) {
   Slot slot;
   if (free_.empty()) {
     slot = static_cast<Slot>(contacts_.size());
@@ -84,12 +97,11 @@ void RestingContacts<Motion>::add(const Contact& contact) {
     free_.pop_back();
   }
   contacts_[slot] = contact;
-  contacts_[slot].alive = true;
-  contacts_[slot].fresh = true;
-  contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
   member(contact.a).contacts.push_back(slot);
-  if (contact.b != no_body) member(contact.b).contacts.push_back(slot);
-  listener_->tell_resting(true, contacts_[slot]);
+  if (contact.b == no_body) return slot;
+  member(contact.b).contacts.push_back(slot);
+  note_carried(contact.a), note_carried(contact.b);
+  return slot;
 }
 
 template <class Motion>
@@ -103,7 +115,7 @@ void RestingContacts<Motion>::drop(Slot slot) {
     if (id == no_body) continue;
     auto& list = of_[id].contacts;
     list.erase(std::find(list.begin(), list.end(), slot));
-    disturb(id);
+    bodies_.fixed(id) && contact.b != no_body ? disturb_carried(id) : disturb(id);
   }
   if (contact.b != no_body) listener_->changed(contact.a, contact.b);
 }
@@ -201,15 +213,34 @@ void RestingContacts<Motion>::schedule_release(Slot slot) {
   releases_.set(slot, Motion::degree >= 3 ? std::min(t, contact.ends) : t);
 }
 
+/// The next contact to end. If several of the same two bodies end at one time, the order of their normals decides.
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::first_release() const {
+  Slot first = releases_.top().slot;
+  const Contact& top = contacts_[first];
+  for (const Slot slot : of_[bodies_.fixed(top.a) && top.b != no_body ? top.b : top.a].contacts) {
+    const Contact& contact = contacts_[slot];
+    if (contact.a != top.a || contact.b != top.b || releases_.time(slot) != releases_.top().time) continue;
+    const auto& normal = contact.normal;
+    const auto& least = contacts_[first].normal;
+    if (std::lexicographical_compare(normal.begin(), normal.end(), least.begin(), least.end())) first = slot;
+  }
+  return first;
+}
+
 template <class Motion>
 void RestingContacts<Motion>::process() {
+  last_event_ = {last_event_.count + 1, next_time()};
   if (releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time)) {
     const BodySlot id = spans_.top().slot;
+    last_event_.is_span = true;
+    last_event_.rank.a = bodies_.keys().key(id);
     spans_.clear(id);
     disturb(id);
     return solve();
   }
-  const Slot slot = releases_.top().slot;
+  const Slot slot = first_release();
+  last_event_.rank = detail::RestingRank{&contacts_, &bodies_.keys()}(slot);
   if (Motion::degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
     part(slot);
   } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
@@ -316,6 +347,7 @@ template <class Motion>
 void RestingContacts<Motion>::become(const Image& image) {
   contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
   islands_ = 0;
+  kept_.clear(), carried_.clear();
   of_.clear();
   for (BodySlot id = 0; id < image.of.size(); ++id) {
     member(id).contacts = image.of[id];
@@ -330,6 +362,7 @@ void RestingContacts<Motion>::become(const Image& image) {
     member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)
                                        : member.disturbed || !member.contacts.empty();
   }
+  for (BodySlot id = 0; id < of_.size(); ++id) note_carried(id);
   releases_.resize(0);
   releases_.resize(contacts_.size());
   for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);

@@ -8,6 +8,7 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/resting/contact_gaps.hpp"
 #include "collision/world/resting/resting_contact.hpp"
+#include "collision/world/resting/resting_progress.hpp"
 #include "collision/world/turning/turning_rest.hpp"
 #include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
@@ -19,6 +20,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -68,10 +70,10 @@ class RestingListener {
   ~RestingListener() = default;
 };
 
-/// Thrown where a contact would begin to rest, or to be remembered because it may rest, in a world whose bodies belong
-/// to another one (transfer.cpp): bodies that rest on each other are not divided among worlds.
+/// Thrown where bodies that are not fixed would come to rest on each other, or of bodies that turn any, in a world
+/// whose bodies belong to another one (transfer.cpp): such bodies are not divided among worlds.
 struct RestsInPart : std::exception {
-  const char* what() const noexcept override { return "World: a part of a world, in which something comes to rest"; }
+  const char* what() const noexcept override { return "World: a part of a world, in which bodies lean on each other"; }
 };
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
@@ -105,8 +107,6 @@ class RestingContacts {
 
   /// Whether there are any.
   bool empty() const { return contacts_.size() == free_.size(); }
-  /// Whether nothing rests and there is no cluster: then only has_met() decides what comes to rest later.
-  bool remembers_nothing() const { return empty() && spans_.empty(); }
   /// A contact of a and b, in their order, or of a and a wall (b: no_body); `none` if there is none.
   Slot find(BodySlot a, BodySlot b, int wall = -1) const { return rests(a) ? find_among(a, b, wall) : none; }
   /// Whether the two have a resting contact that keeps them from coming nearer; in a cluster only those that push do.
@@ -128,7 +128,11 @@ class RestingContacts {
   void forget(BodySlot id) {
     drop_all(id);
     if (id < spans_.slots()) spans_.clear(id);
-    if (id < of_.size()) of_[id] = {};
+    if (id < of_.size()) {
+      if (of_[id].listed) std::erase(carried_, id);
+      of_[id] = {};
+    }
+    if (id < kept_.size()) kept_[id] = {};
   }
 
   /// A caller moves a body: it leaves its cluster.
@@ -145,8 +149,11 @@ class RestingContacts {
 
   /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
   void disturb(BodySlot id) {
-    if (!contacts_.empty()) note(id);
+    if (!contacts_.empty() || clustered(id)) note(id);
   }
+  /// A fixed body has begun or ceased to carry another: solve() is to look at what it carries, where that may change
+  /// anything. Cost: that of all bodies that are carried and not steady.
+  void disturb_carried(BodySlot id);
   bool solved() const { return disturbed_.empty(); }
   /// Gives all disturbed bodies the motions that their contacts allow.
   void solve() {
@@ -177,7 +184,6 @@ class RestingContacts {
   void halt(BodySlot id);
   /// Two bodies that are not fixed have met.
   void note_meeting(BodySlot a, BodySlot b) { note_meeting(a), note_meeting(b); }
-  bool has_met(BodySlot id) const { return id < of_.size() && of_[id].met; }
   void note_meeting(BodySlot id) { member(id).met = true; }
   /// Makes a cluster of all that leans on a body that is not fixed.
   void gather(BodySlot id) { gather(id, clock_.now); }
@@ -185,6 +191,29 @@ class RestingContacts {
   bool can_gather(BodySlot a, BodySlot b) const {
     return (!bodies_.fixed(a) && longest_span(a) < never) || (!bodies_.fixed(b) && longest_span(b) < never);
   }
+
+  // resting_transfer.cpp: bodies that several worlds have, each a part of them (transfer.cpp).
+  using Progress = RestingProgress;
+  /// Whether each body leans on walls alone, or lies steady on walls and fixed bodies: then the progress of each is all
+  /// there is.
+  bool divisible() const;
+  /// Of a body, if it leans on no others but fixed ones; of a fixed one, what rests of it at walls.
+  Progress progress(BodySlot id) const;
+  /// A body without contacts goes on from there. `slot_of`: gives the slot of a body by its number, `no_body` if it is
+  /// not here: then std::runtime_error is thrown.
+  void go_on_from(BodySlot id, const Progress& progress, const std::function<BodySlot(BodySlot)>& slot_of);
+  /// A body is removed with which another world goes on: nothing is told, and what it leaned on goes on as it was.
+  void let_go(BodySlot id);
+  /// Other worlds run the bodies from now on: this one only keeps the progress of each, until go_on().
+  void set_aside();
+  void go_on();
+  const Progress& kept(BodySlot id) const;
+  void keep(BodySlot id, const Progress& progress);
+  void forget_kept() { kept_.clear(); }
+  /// The last event of process(), and, in a world whose bodies belong to another one, the bodies whose contacts have
+  /// been solved for since this was called last, some of them several times.
+  const detail::RestingEvent& last_event() const { return last_event_; }
+  std::vector<BodySlot> take_solved() { return std::exchange(solved_, {}); }
 
   /// Checks all contacts, once the bodies have the motions that these allow; throws AuditFailure.
   void audit(double t) const;
@@ -205,10 +234,6 @@ class RestingContacts {
     void archive(Archive& archive);
     /// Throws std::runtime_error, naming what is wrong.
     void check(const typename Bodies<Motion>::Image& bodies, double now, const WorldOptions& options) const;
-
-   private:
-    /// How far a normal may be from unit length: far above the rounding of a normalisation.
-    static constexpr double normal_rounding = 0x1p-40;
   };
   Image image() const;
   void become(const Image& image);
@@ -222,6 +247,7 @@ class RestingContacts {
     bool disturbed = false;
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
     double calm_since = never;  ///< s
+    bool listed = false;        ///< in carried_
     bool met = false;           ///< it has met another that is not fixed, and may come to rest
     bool carried = false;       ///< degree 3 and above: its motion is one that contacts have changed
   };
@@ -239,6 +265,12 @@ class RestingContacts {
   }
   Slot find_among(BodySlot a, BodySlot b, int wall) const;
   Slot find_like(const Contact& contact) const;
+  Slot give_slot(const Contact& contact);
+  Slot first_release() const;
+  bool is_carried(BodySlot id) const;
+  bool steady(BodySlot id) const;
+  void note_carried(BodySlot id);
+  bool is_complete(BodySlot id) const;
   void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);
@@ -294,9 +326,13 @@ class RestingContacts {
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodySlot> disturbed_;
+  std::vector<BodySlot> carried_;  ///< bodies that rest on fixed ones, but for some that are steady
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
   DaryQueue<BodyRank> spans_;                ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;
+  detail::RestingEvent last_event_;
+  std::vector<BodySlot> solved_;
+  std::vector<Progress> kept_;  ///< by body, up to the last of which there is any
 };
 
 /// The part of a world that knows what rests in it: contacts that last, or, where bodies turn, groups that lie still.

@@ -6,7 +6,6 @@
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace kds::collision {
@@ -16,12 +15,7 @@ template <class Archive>
 void RestingContacts<Motion>::Image::archive(Archive& archive) {
   archive(free, disturbed, releases, span_ends, calm_since, met, spans);
   archive.each(of, [&](auto& slots) { archive(slots); });
-  archive.each(contacts, [&](Contact& c) {
-    archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.depth, c.gap, c.room,
-            c.since, c.aim);
-    image::vector(archive, c.normal), image::vector(archive, c.point);
-    if constexpr (Motion::degree >= 3) archive(c.ends);
-  });
+  archive(contacts);
 }
 
 template <class Motion>
@@ -72,13 +66,7 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
            "is not of two bodies in the world");
       need(options.response == Response::elastic, "is of two bodies in a mode without resting contacts");
     }
-    need(std::abs(contact.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
-    need(std::isfinite(contact.push) && std::isfinite(contact.solved), "its push or rate is not finite");
-    need(contact.depth >= 0 && std::isfinite(contact.depth), "its depth is negative or not finite");
-    need(contact.point.allFinite(), "its point is not finite");
-    need(std::isfinite(contact.gap) && contact.room >= 0 && std::isfinite(contact.room) && std::isfinite(contact.aim) &&
-             image::is_past(contact.since, now),
-         "its gap is not finite, or not known yet");
+    detail::check_numbers(contact, now, need);
     need(image::is_to_come(releases[slot], now), "is to be let go before now");
     if constexpr (Motion::degree >= 3)
       need(image::is_to_come(contact.ends, now), "is pressed together until before now");

@@ -36,6 +36,10 @@ void RestingContacts<Motion>::solve_all() {
       for (bool dissolved = false; !solve_island(id, dissolved);) {
       }
     }
+    note_carried(id);
+    if (!bodies_.numbered()) continue;
+    solved_.push_back(id);
+    if (!of_[id].disturbed && !is_complete(id)) throw RestsInPart();
   }
 }
 

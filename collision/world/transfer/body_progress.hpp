@@ -7,8 +7,9 @@
 
 namespace kds::collision {
 
-/// All that changes in the state of a body without a caller, if it rests on nothing: another world that has the same
-/// body can go on from it. The pieces of motion to come are not in it, since they follow from the time.
+/// All that changes in the state of a body without a caller, but for what rests (resting_progress.hpp): another world
+/// that has the same body can go on from it. The pieces of motion to come are not in it, since they follow from the
+/// time.
 template <class Motion>
 struct BodyProgress {
   Motion motion{};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/world/bodies_image.hpp"
+#include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
 
 #include <memory>
@@ -18,15 +19,20 @@ struct Parcel {
   // In the same order:
   std::vector<std::vector<Motion>> to_come{};  ///< pieces of motion, the last first
   std::vector<typename Tumbling<Motion>::Progress> turning{};
-  std::vector<char> met{};  ///< whether it has met a body that is not fixed
+  std::vector<typename RestingPart<Motion>::Progress> resting{};
 
   bool empty() const { return numbers.empty(); }
   template <class Archive>
   void archive(Archive& archive) {
     archive(numbers);
     bodies.archive_bodies(archive);
-    archive(to_come, met);
-    if constexpr (turns<Motion>) archive(turning);
+    archive(to_come);
+    if constexpr (turns<Motion>) {
+      archive(turning);
+      resting.resize(to_come.size());
+    } else {
+      archive(resting);
+    }
   }
 };
 

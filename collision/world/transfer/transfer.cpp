@@ -14,7 +14,7 @@ bool Transfer<Motion>::is_divisible() const {
   if (!guard_.whole() || told_of_work || parts_.options.response == Response::callback) return false;
   if (parts_.volumes.any_from_callers() || parts_.volumes.end_of_bent() > 0 || parts_.self_contacts.next_time() < never)
     return false;
-  return parts_.resting.remembers_nothing() && parts_.reports.empty();
+  return parts_.resting.divisible() && parts_.reports.empty();
 }
 
 template <class Motion>
@@ -32,7 +32,6 @@ std::vector<BodySlot> Transfer<Motion>::take_in(const Transfer& from, std::span<
       parts_.volumes.add(slot, {});
       parts_.scripts.take_in(slot, from.parts_.scripts, there);
       parts_.tumbling.take_in(slot, from.parts_.tumbling, there);
-      if (from.parts_.resting.has_met(there)) parts_.resting.note_meeting(slot);
       taken.push_back(slot);
       if (body.entered) {
         entering.push_back(slot);
@@ -41,6 +40,13 @@ std::vector<BodySlot> Transfer<Motion>::take_in(const Transfer& from, std::span<
       }
     }
     relate(from.parts_.bodies, slots, taken, known, ignored);
+    const auto slot_of = [&](BodySlot number) {
+      const BodySlot slot = slot_among(taken, number);
+      return slot != no_body ? slot : slot_among(known, number);
+    };
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      parts_.resting.go_on_from(taken[i], from.parts_.resting.kept(slots[i]), slot_of);
+    }
     membership_.enter(entering, Pairs<Motion>::Begin::moving);
     return taken;
   });
@@ -54,15 +60,10 @@ void Transfer<Motion>::relate(const Bodies<Motion>& from, std::span<const BodySl
                               const IgnoredPairs& ignored) {
   const auto& attachments = from.attachments();
   if (attachments.empty() && ignored.empty()) return;
-  const auto number = [this](BodySlot slot) { return parts_.bodies.number(slot); };
-  const auto slot_among = [&](std::span<const BodySlot> here, BodySlot of) {
-    const auto found = std::ranges::lower_bound(here, of, {}, number);
-    return found != here.end() && number(*found) == of ? *found : no_body;
-  };
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const BodySlot owner = attachments.owner(slots[i]);
     if (owner != no_body) parts_.bodies.attach(taken[i], slot_among(taken, from.number(owner)));
-    ignored.each_partner(number(taken[i]), [&](BodySlot partner) {
+    ignored.each_partner(parts_.bodies.number(taken[i]), [&](BodySlot partner) {
       for (const BodySlot other : {slot_among(taken, partner), slot_among(known, partner)}) {
         if (other != no_body) parts_.bodies.ignore(taken[i], other, true);
       }
@@ -70,12 +71,20 @@ void Transfer<Motion>::relate(const Bodies<Motion>& from, std::span<const BodySl
   }
 }
 
+/// Of these slots, which are in the order of numbers, that of a body by its number; `no_body` if it is not among them.
+template <class Motion>
+BodySlot Transfer<Motion>::slot_among(std::span<const BodySlot> slots, BodySlot of) const {
+  const auto number = [this](BodySlot slot) { return parts_.bodies.number(slot); };
+  const auto found = std::ranges::lower_bound(slots, of, {}, number);
+  return found != slots.end() && number(*found) == of ? *found : no_body;
+}
+
 template <class Motion>
 void Transfer<Motion>::let_go(std::span<const BodySlot> slots) {
   edits_.begin("World::let_go");
   edits_.count();
   guard_.change([&] {
-    for (const BodySlot slot : slots) membership_.take_out(slot);
+    for (const BodySlot slot : slots) parts_.resting.let_go(slot), membership_.take_out(slot);
     parts_.reports.become({});
   });
 }
@@ -122,6 +131,7 @@ void Transfer<Motion>::note_passed(double t) {
 template <class Motion>
 void Transfer<Motion>::set_aside() {
   guard_.change([&] {
+    parts_.resting.set_aside();
     parts_.pairs.clear();
     parts_.walls.forget_all();
     parts_.counters.broad_phase = parts_.all_counters().broad_phase;
@@ -140,6 +150,7 @@ void Transfer<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
       if (parts_.bodies.alive(slot) && !parts_.bodies[slot].entered && has_begun(slot)) parts_.bodies.wait(slot);
     }
     parts_.tumbling.go_on();
+    parts_.resting.go_on();
     parts_.walls.become();
     parts_.rebuild_broad_phase();
     go_on_overlapping(overlaps);

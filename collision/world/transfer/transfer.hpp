@@ -37,7 +37,8 @@ class Transfer {
   Transfer& operator=(const Transfer&) = delete;
 
   // transfer.cpp
-  /// Whether descriptions, scripts and progress of bodies, and the pairs that overlap, decide all later events.
+  /// Whether descriptions, scripts and progress of bodies, what rests of each of them, and the pairs that overlap,
+  /// decide all later events.
   bool is_divisible() const;
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
   /// Those that have not entered there enter with the next step, or when their motion begins. A sensor and the body to
@@ -54,9 +55,14 @@ class Transfer {
   /// A body that belongs to another world continues from its state there. The first, for different bodies, may be
   /// called by several threads at once.
   void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress);
-  void note_meeting(BodySlot slot) { parts_.resting.note_meeting(slot); }
-  /// Whether it has met a body that is not fixed.
-  bool has_met(BodySlot slot) const { return parts_.resting.has_met(slot); }
+  using Resting = typename RestingPart<Motion>::Progress;
+  /// What rests of a body of a world that runs.
+  Resting resting(BodySlot slot) const { return parts_.resting.progress(slot); }
+  /// The same of one that has been set aside, or only stores bodies: what it has been told last.
+  Resting kept_resting(BodySlot slot) const { return parts_.resting.kept(slot); }
+  void keep_resting(BodySlot slot, const Resting& resting) { parts_.resting.keep(slot, resting); }
+  /// As RestingContacts::take_solved().
+  std::vector<BodySlot> take_solved() { return parts_.resting.take_solved(); }
   /// Other worlds have run to t: bodies have entered, pieces of scripts have begun, timers have rung.
   void note_passed(double t);
   /// Forgets all but the bodies, until go_on().
@@ -83,6 +89,7 @@ class Transfer {
 
  private:
   bool has_begun(BodySlot slot) const { return parts_.bodies.path(slot).start <= parts_.clock.now; }
+  BodySlot slot_among(std::span<const BodySlot> slots, BodySlot of) const;
   void relate(const Bodies<Motion>& from, std::span<const BodySlot> slots, std::span<const BodySlot> taken,
               std::span<const BodySlot> known, const IgnoredPairs& ignored);
   void resume(const Parcel<Motion>& parcel, std::size_t place, BodySlot slot);

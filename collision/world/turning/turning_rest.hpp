@@ -100,8 +100,24 @@ class TurningRest {
   bool empty() const { return resting_ == 0; }
   /// Whether nothing is remembered that decides what comes to rest later.
   bool remembers_nothing() const;
-  static bool has_met(BodySlot) { return false; }
-  static void note_meeting(BodySlot) {}
+  // As RestingContacts: worlds are divided only where there is nothing of this part.
+  struct Progress {
+    template <class Archive>
+    void archive(Archive&) {}
+    friend bool same_bits(const Progress&, const Progress&) { return true; }
+  };
+  bool divisible() const { return remembers_nothing(); }
+  static Progress progress(BodySlot) { return {}; }
+  static Progress kept(BodySlot) { return {}; }
+  static void keep(BodySlot, const Progress&) {}
+  static void forget_kept() {}
+  static void go_on_from(BodySlot, const Progress&, const std::function<BodySlot(BodySlot)>&) {}
+  static void let_go(BodySlot) {}
+  static void set_aside() {}
+  static void go_on() {}
+  static detail::RestingEvent last_event() { return {}; }
+  static std::vector<BodySlot> take_solved() { return {}; }
+
   bool holds(BodySlot a, BodySlot b, int = -1) const { return find(a, b) != none; }
   /// Not `none` if a and b, in their order, rest on each other.
   Slot find(BodySlot a, BodySlot b, int = -1) const;

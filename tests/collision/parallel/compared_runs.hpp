@@ -38,15 +38,21 @@ struct Manner {
 /// What the runs of a test did in all, so that it is seen that there was something to go wrong.
 struct Seen {
   std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, corrected = 0, copies = 0, divided = 0;
+  std::uint64_t rests = 0;   ///< contacts that have begun or ceased to last
+  std::uint64_t tables = 0;  ///< runs with such contacts, of which no stretch was run as one world
 
-  void add(const ParallelCounters& of, std::size_t logged) {
-    events += logged, windows += of.windows, failed += of.windows_failed, whole += of.stretches_whole;
+  void add(const ParallelCounters& of, const std::vector<Event>& log) {
+    const auto is_rest = [](const Event& event) { return event.kind == Kind::rests || event.kind == Kind::wakes; };
+    const auto resting = static_cast<std::uint64_t>(std::count_if(log.begin(), log.end(), is_rest));
+    rests += resting, tables += resting > 0 && of.stretches_whole == 0;
+    events += log.size(), windows += of.windows, failed += of.windows_failed, whole += of.stretches_whole;
     corrected += of.copies_corrected, copies += of.copies_made, divided += of.windows > 0;
   }
   std::string text() const {
     std::ostringstream out;
     out << "events " << events << ", windows " << windows << ", failed " << failed << ", stretches whole " << whole
-        << ", copies " << copies << ", corrected " << corrected << ", runs with windows " << divided;
+        << ", copies " << copies << ", corrected " << corrected << ", runs with windows " << divided << ", rests "
+        << rests << ", tables " << tables;
     return out.str();
   }
 };
@@ -55,6 +61,9 @@ struct Seen {
 struct DividedLog final : ParallelLog {
   void rests(const PairEvent& e) override { note({Kind::rests, e.a, e.b, e.contact}); }
   void wakes(const PairEvent& e) override { note({Kind::wakes, e.a, e.b, e.contact}); }
+  void rests_at_wall(const WallEvent& e) override { note(about_wall(Kind::rests, e)); }
+  void wakes_at_wall(const WallEvent& e) override { note(about_wall(Kind::wakes, e)); }
+  void rebound_suppressed_at_wall(const WallEvent& e) override { note(about_wall(Kind::rebound_suppressed, e)); }
 };
 
 inline void require_same(const std::vector<Event>& right, const std::vector<Event>& log, const std::string& what) {
@@ -148,7 +157,7 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
       if (whole.motion(id) == world.motion(id)) continue;
       throw std::runtime_error(what + ": the motion of body " + std::to_string(id) + " differs");
     }
-    if (rank == 0) seen.add(told, log.events.size());
+    if (rank == 0) seen.add(told, log.events);
   };
   if (manner.processes == 1) {
     run(nullptr);

@@ -10,6 +10,13 @@
 
 namespace kds::collision::tests {
 
+/// In the logs of these tests the place of a body on which another one rests, if that is a wall.
+inline constexpr BodyId first_wall = ~BodyId{0} - 5;
+inline Event about_wall(Kind kind, const WallEvent& e) {
+  return {kind, e.body, first_wall + static_cast<BodyId>(e.wall), e.contact};
+}
+inline bool is_about_wall(const Event& e) { return e.kind != Kind::wall && e.b >= first_wall; }
+
 /// Writes down what EventLog writes down, then calls `then`, if there is one.
 struct ParallelLog : ParallelListener {
   std::vector<Event> events;
@@ -48,8 +55,13 @@ struct WholeLog final : BasicWorldListener<Motion> {
   void rebound_suppressed(W& w, const PairEvent& e) override {
     note(w, {Kind::rebound_suppressed, e.a, e.b, e.contact});
   }
+  void rebound_suppressed_at_wall(W& w, const WallEvent& e) override {
+    note(w, about_wall(Kind::rebound_suppressed, e));
+  }
   void rests(W& w, const PairEvent& e) override { note(w, {Kind::rests, e.a, e.b, e.contact}); }
   void wakes(W& w, const PairEvent& e) override { note(w, {Kind::wakes, e.a, e.b, e.contact}); }
+  void rests_at_wall(W& w, const WallEvent& e) override { note(w, about_wall(Kind::rests, e)); }
+  void wakes_at_wall(W& w, const WallEvent& e) override { note(w, about_wall(Kind::wakes, e)); }
   void timer(W& w, TimerId timer) override { note(w, {Kind::timer, timer, 0, {.time = w.now()}}); }
 };
 

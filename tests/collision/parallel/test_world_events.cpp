@@ -87,6 +87,48 @@ TEST_CASE("Of events of one time overlaps are told first, then walls, then conta
   CHECK(merge.empty());
 }
 
+TEST_CASE("What follows from an event is told right after it, whichever domains record it", "[parallel]") {
+  using Phase = DomainEvent::Cause::Phase;
+  const auto following = [](Kind kind, BodyId a, BodyId b, Phase phase, BodyId cause_a, BodyId cause_b) {
+    DomainEvent one = event(1, static_cast<BodySlot>(a), static_cast<BodySlot>(b), kind);
+    one.cause = {phase, cause_a, cause_b};
+    return one;
+  };
+  // Body 9 is a lift, whose wall domain 0 tells of; domain 1 records alone what that does to a body on it.
+  std::vector<std::vector<DomainEvent>> logs(2);
+  logs[0] = {following(Kind::wakes, 4, 9, Phase::pieces, 0, 0), event(1, 9, 5, Kind::wall),
+             following(Kind::wakes, 6, 9, Phase::walls, 9, 5), following(Kind::wakes, 2, 9, Phase::spans, 2, 0),
+             event(1, 4, 8)};
+  logs[1] = {following(Kind::rests, 1, 9, Phase::pieces, 0, 0),
+             following(Kind::wakes, 3, 9, Phase::walls, 9, 5),
+             following(Kind::rests_at_wall, 3, 2, Phase::walls, 9, 5),
+             event(1, 10, 0, Kind::wall),
+             following(Kind::wakes, 7, 9, Phase::ends_of_rest, 7, 9),
+             event(1, 0, 1),
+             following(Kind::rebound_suppressed, 0, 9, Phase::contacts, 0, 1),
+             following(Kind::rests, 0, 9, Phase::contacts, 0, 1)};
+  const std::vector<std::pair<Kind, BodyId>> right{{Kind::wakes, 4},
+                                                   {Kind::rests, 1},
+                                                   {Kind::wall, 9},
+                                                   {Kind::wakes, 3},
+                                                   {Kind::wakes, 6},
+                                                   {Kind::rests_at_wall, 3},
+                                                   {Kind::wall, 10},
+                                                   {Kind::wakes, 7},
+                                                   {Kind::wakes, 2},
+                                                   {Kind::contact, 0},
+                                                   {Kind::rebound_suppressed, 0},
+                                                   {Kind::rests, 0},
+                                                   {Kind::contact, 4}};
+  EventMerge merge(std::move(logs));
+  for (const auto& [kind, a] : right) {
+    const DomainEvent told = merge.take_next();
+    CHECK(told.kind == kind);
+    CHECK(told.a == a);
+  }
+  CHECK(merge.empty());
+}
+
 TEST_CASE("Logs that are not of one history are refused", "[parallel]") {
   auto logs = divided({event(1, 0, 1), event(2, 2, 3)}, 2);
   logs[1].erase(logs[1].begin());
