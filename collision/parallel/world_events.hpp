@@ -4,6 +4,7 @@
 #include "collision/body_id.hpp"
 #include "collision/narrow_phase/contact.hpp"
 #include "collision/parallel/domain_sets.hpp"
+#include "kds/certificate.hpp"
 
 #include <array>
 #include <compare>
@@ -73,7 +74,7 @@ struct DomainEvent {
   struct Order {
     double time;
     Cause origin;
-    int kind;
+    int kind;  ///< 0 if nothing comes before it that has the same origin
     BodyId a, b;
     int wall;
 
@@ -94,9 +95,10 @@ struct DomainEvent {
 /// The events of all domains in the order of one world that knows all.
 ///
 /// Each domain has its events in that order. One of two bodies with different owners is in the logs of both, and is
-/// possible only when it is the first that is left in both: what comes before it in either may have caused it. Of the
-/// events that are possible the least is that which one world would take from its queue: that one is possible in the
-/// domains too, and all possible ones are in the queue.
+/// possible only when it is the first that is left in both: what comes before it in either may have caused it. What
+/// follows from the event that was told last comes first. Of the other events that are possible the least is that which
+/// one world would take from its queue: that one is possible in the domains too, and all possible ones are in the
+/// queue.
 ///
 /// `Logs`: head(domain) is the first event that is left in a log, or null, until go_on(domain), which leaves it behind;
 /// size() is how many domains there are.
@@ -119,14 +121,20 @@ class BasicEventMerge {
 
   /// Precondition: not empty. Throws std::logic_error if no event is possible: then the logs are not of one history.
   const DomainEvent& next() const {
-    if (possible_.empty()) throw std::logic_error("ParallelWorld: domains disagree about what has happened");
-    return *logs_.head(possible_.top().domain);
+    if (next_queue().empty()) throw std::logic_error("ParallelWorld: domains disagree about what has happened");
+    return *logs_.head(next_queue().top().domain);
   }
   /// The same, and leaves it behind.
   DomainEvent take_next() {
     const DomainEvent event = next();
-    const std::size_t domain = possible_.top().domain;
-    possible_.pop();
+    const std::size_t domain = next_queue().top().domain;
+    next_queue().pop();
+    told_ = event.order();
+    // Of those that could not be told before it, what follows from it is the least now.
+    while (!possible_.empty() && follows(possible_.top().order)) {
+      following_.push(possible_.top());
+      possible_.pop();
+    }
     const std::size_t other = event.other_owner;
     go_on(domain);
     if (other != DomainEvent::nobody) go_on(other);
@@ -145,6 +153,14 @@ class BasicEventMerge {
     }
   };
 
+  using Queue = std::priority_queue<Possible>;  ///< each event once, the first on top
+
+  Queue& next_queue() { return following_.empty() ? possible_ : following_; }
+  const Queue& next_queue() const { return following_.empty() ? possible_ : following_; }
+  /// Whether an event follows from the one that was told last, or from that from which it follows.
+  bool follows(const DomainEvent::Order& order) const {
+    return order.kind > 0 && order.time == told_.time && order.origin == told_.origin;
+  }
   void go_on(std::size_t domain) {
     logs_.go_on(domain);
     if (!logs_.head(domain)) --left_;
@@ -158,12 +174,15 @@ class BasicEventMerge {
   void add_if_possible(std::size_t domain) {
     const DomainEvent* event = logs_.head(domain);
     if (!event || (event->other_owner != DomainEvent::nobody && !is_shared_by(domain, event->other_owner))) return;
-    possible_.push({event->order(), domain});
+    const auto order = event->order();
+    (follows(order) ? following_ : possible_).push({order, domain});
   }
 
   Logs logs_;
-  std::size_t left_ = 0;                    ///< logs in which events are left
-  std::priority_queue<Possible> possible_;  ///< each once, the first on top
+  std::size_t left_ = 0;                             ///< logs in which events are left
+  Queue following_;                                  ///< what follows from the event that was told last
+  Queue possible_;                                   ///< the others that are possible
+  DomainEvent::Order told_{-never, {}, 0, 0, 0, 0};  ///< the last that was told
 };
 
 /// Logs in memory.

@@ -69,7 +69,9 @@ void RestingContacts<Motion>::add(const Contact& contact) {
   if (bodies_.numbered() && (leans || (contact.b != no_body && (clustered(contact.a) || clustered(contact.b))))) {
     throw RestsInPart();
   }
-  for (const Slot slot : member(contact.a).contacts) {
+  // The shorter list is searched: a floor has many contacts.
+  const bool from_b = contact.b != no_body && member(contact.b).contacts.size() < member(contact.a).contacts.size();
+  for (const Slot slot : member(from_b ? contact.b : contact.a).contacts) {
     Contact& other = contacts_[slot];
     if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
       continue;
@@ -355,7 +357,7 @@ void RestingContacts<Motion>::become(const Image& image) {
     member(id).calm_since = image.calm_since[id];
     member(id).met = image.met[id] != 0;
   }
-  for (const BodySlot id : disturbed_) member(id).disturbed = true;
+  for (const BodySlot id : disturbed_) member(id).disturbed = member(id).moved = true;
   for (BodySlot id = 0; id < of_.size(); ++id) {
     Member& member = of_[id];
     const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };

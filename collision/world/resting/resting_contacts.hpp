@@ -149,11 +149,13 @@ class RestingContacts {
 
   /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
   void disturb(BodySlot id) {
-    if (!contacts_.empty() || clustered(id)) note(id);
+    if (!contacts_.empty() || clustered(id)) note(id, true);
   }
-  /// A fixed body has begun or ceased to carry another: solve() is to look at what it carries, where that may change
-  /// anything. Cost: that of all bodies that are carried and not steady.
-  void disturb_carried(BodySlot id);
+  /// A fixed body has begun or ceased to carry another: solve() is to look at what else it carries, where that may
+  /// change anything.
+  void disturb_carried(BodySlot id) {
+    if (!contacts_.empty()) note(id, false);
+  }
   bool solved() const { return disturbed_.empty(); }
   /// Gives all disturbed bodies the motions that their contacts allow.
   void solve() {
@@ -245,6 +247,7 @@ class RestingContacts {
     std::uint64_t island = 0;  ///< the last island in which it was found
     std::uint32_t place = 0;   ///< in that
     bool disturbed = false;
+    bool moved = false;         ///< of a fixed one that is disturbed: its motion has changed
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
     double calm_since = never;  ///< s
     bool listed = false;        ///< in carried_
@@ -268,16 +271,17 @@ class RestingContacts {
   Slot give_slot(const Contact& contact);
   Slot first_release() const;
   bool is_carried(BodySlot id) const;
+  bool carries_unsteady(BodySlot id);
   bool steady(BodySlot id) const;
   void note_carried(BodySlot id);
   bool is_complete(BodySlot id) const;
-  void note(BodySlot id);
+  void note(BodySlot id, bool moved);
   void drop(Slot slot);
   void schedule_release(Slot slot);
 
   // resting_islands.cpp
   void solve_all();
-  void solve_fixed(BodySlot id);
+  void solve_fixed(BodySlot id, bool moved);
   bool solve_island(BodySlot id, bool& dissolved);
   Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
@@ -326,7 +330,7 @@ class RestingContacts {
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodySlot> disturbed_;
-  std::vector<BodySlot> carried_;  ///< bodies that rest on fixed ones, but for some that are steady
+  std::vector<BodySlot> carried_;            ///< bodies that rest on fixed ones, but for some that are steady
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
   DaryQueue<BodyRank> spans_;                ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;

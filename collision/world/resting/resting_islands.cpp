@@ -13,14 +13,15 @@ namespace kds::collision {
 using Eigen::Vector3d;
 
 template <class Motion>
-void RestingContacts<Motion>::note(BodySlot id) {
+void RestingContacts<Motion>::note(BodySlot id, bool moved) {
   if (!bodies_.entered(id)) return;
   bool as_given = true;
   if constexpr (Motion::degree == 2)
     as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
   if constexpr (Motion::degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
   if (!carries(id) && as_given) return;
-  if (std::exchange(member(id).disturbed, true)) return;
+  member(id).moved = of_[id].moved || moved;
+  if (std::exchange(of_[id].disturbed, true)) return;
   disturbed_.push_back(id);
 }
 
@@ -31,7 +32,7 @@ void RestingContacts<Motion>::solve_all() {
     disturbed_.pop_back();
     if (!std::exchange(member(id).disturbed, false) || !bodies_.entered(id)) continue;
     if (bodies_.fixed(id)) {
-      solve_fixed(id);
+      solve_fixed(id, std::exchange(of_[id].moved, false));
     } else {
       for (bool dissolved = false; !solve_island(id, dissolved);) {
       }
@@ -43,9 +44,13 @@ void RestingContacts<Motion>::solve_all() {
   }
 }
 
-/// A fixed body rests at walls only: they take away the speed and the acceleration that lead out of the domain.
+/// A fixed body rests at walls only: they take away the speed and the acceleration that lead out of the domain. What it
+/// carries is solved for anew, but for bodies that are steady if it has only begun or ceased to carry another: there
+/// may be very many on a floor.
 template <class Motion>
-void RestingContacts<Motion>::solve_fixed(BodySlot id) {
+void RestingContacts<Motion>::solve_fixed(BodySlot id, bool moved) {
+  const bool disturbs = moved || carries_unsteady(id);
+  if (Motion::degree <= 2 && !disturbs) return;
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> contacts = of_[id].contacts;  // some may be dropped
@@ -58,7 +63,8 @@ void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   for (const Slot slot : contacts) {
     Contact& contact = contacts_[slot];
     if (contact.wall < 0) {
-      disturb(contact.a == id ? contact.b : contact.a);
+      const BodySlot carried = contact.a == id ? contact.b : contact.a;
+      if (disturbs && (moved || !steady(carried))) disturb(carried);
       continue;
     }
     const Eigen::Index axis = contact.wall / 2;

@@ -52,19 +52,23 @@ void RestingContacts<Motion>::note_carried(BodySlot id) {
   carried_.push_back(id);
 }
 
+/// Whether a fixed body carries one that is not steady and waits for no solution. Cost: that of all bodies that rest on
+/// fixed ones and are not steady; of those that have become so, once.
 template <class Motion>
-void RestingContacts<Motion>::disturb_carried(BodySlot id) {
+bool RestingContacts<Motion>::carries_unsteady(BodySlot id) {
+  bool any = false;
   std::erase_if(carried_, [&](BodySlot carried) {
     if (!is_carried(carried) || steady(carried)) {
       of_[carried].listed = false;
       return true;
     }
     const auto& contacts = of_[carried].contacts;
-    const bool by_it = std::any_of(contacts.begin(), contacts.end(),
-                                   [&](Slot slot) { return contacts_[slot].a == id || contacts_[slot].b == id; });
-    if (by_it) disturb(carried);
+    any = any || (!of_[carried].disturbed && std::any_of(contacts.begin(), contacts.end(), [&](Slot slot) {
+            return contacts_[slot].a == id || contacts_[slot].b == id;
+          }));
     return false;
   });
+  return any;
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;

@@ -71,8 +71,9 @@ inline void require_same(const std::vector<Event>& right, const std::vector<Even
   if (first == right.size() && first == log.size()) return;
   std::ostringstream text;
   text << what << ": events " << right.size() << " and " << log.size() << ", the first that differs is " << first;
-  if (first < right.size()) text << "\nright: " << right[first];
-  if (first < log.size()) text << "\nwrong: " << log[first];
+  for (std::size_t i = first - std::min<std::size_t>(first, 2); i < first; ++i) text << "\nboth: " << right[i];
+  for (std::size_t i = first; i < std::min(first + 3, right.size()); ++i) text << "\nright: " << right[i];
+  for (std::size_t i = first; i < std::min(first + 3, log.size()); ++i) text << "\nwrong: " << log[i];
   throw std::runtime_error(text.str());
 }
 

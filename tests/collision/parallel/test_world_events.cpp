@@ -107,19 +107,29 @@ TEST_CASE("What follows from an event is told right after it, whichever domains 
              event(1, 0, 1),
              following(Kind::rebound_suppressed, 0, 9, Phase::contacts, 0, 1),
              following(Kind::rests, 0, 9, Phase::contacts, 0, 1)};
-  const std::vector<std::pair<Kind, BodyId>> right{{Kind::wakes, 4},
-                                                   {Kind::rests, 1},
-                                                   {Kind::wall, 9},
-                                                   {Kind::wakes, 3},
-                                                   {Kind::wakes, 6},
-                                                   {Kind::rests_at_wall, 3},
-                                                   {Kind::wall, 10},
-                                                   {Kind::wakes, 7},
-                                                   {Kind::wakes, 2},
-                                                   {Kind::contact, 0},
-                                                   {Kind::rebound_suppressed, 0},
-                                                   {Kind::rests, 0},
-                                                   {Kind::contact, 4}};
+  std::vector<std::pair<Kind, BodyId>> right{{Kind::wakes, 4},
+                                             {Kind::rests, 1},
+                                             {Kind::wall, 9},
+                                             {Kind::wakes, 3},
+                                             {Kind::wakes, 6},
+                                             {Kind::rests_at_wall, 3},
+                                             {Kind::wall, 10},
+                                             {Kind::wakes, 7},
+                                             {Kind::wakes, 2},
+                                             {Kind::contact, 0},
+                                             {Kind::rebound_suppressed, 0},
+                                             {Kind::rests, 0},
+                                             {Kind::contact, 4}};
+  // A contact of two domains, from which something follows in both, and in one of them a contact that comes before it.
+  for (auto& log : logs) log.push_back(event(2, 4, 5));
+  logs[0].back().other_owner = 1, logs[1].back().other_owner = 0;
+  for (auto& log : logs) {
+    const BodyId body = &log == &logs[0] ? 4 : 5;
+    log.push_back(following(Kind::wakes, body, 9, Phase::contacts, 4, 5));
+    log.back().contact.time = 2;
+  }
+  logs[0].push_back(event(2, 0, 4));
+  right.insert(right.end(), {{Kind::contact, 4}, {Kind::wakes, 4}, {Kind::wakes, 5}, {Kind::contact, 0}});
   EventMerge merge(std::move(logs));
   for (const auto& [kind, a] : right) {
     const DomainEvent told = merge.take_next();
