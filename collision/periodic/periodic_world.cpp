@@ -8,7 +8,6 @@
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
-#include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -318,42 +317,7 @@ void PeriodicWorld<Degree>::moved(World<Degree>&, BodyId in_world) {
   if (body.in_world == in_world) follow(body);
 }
 
-template <int Degree>
-template <class Archive>
-void PeriodicWorld<Degree>::archive(Archive& archive) {
-  archive.tag("periodic world");
-  archive(world_, roles_, reals_, keys_, free_, greatest_radius_, slack_, thermal_, counters_);
-  if constexpr (Archive::loading) {
-    leaving_.resize(0);
-    make_room(leaving_, reals_.size());
-    size_ = 0;
-    std::size_t images = 0;
-    for (const Real& body : reals_) {
-      if (!body.alive) continue;
-      ++size_;
-      archive.require(id_of(slot_of(body)) < keys_.next_id(), "a body of a periodic world has an id that is to come");
-      const auto is = [&](BodyId in_world, const Offset& offset) {
-        return world_.contains(in_world) && body_slot(in_world) < roles_.size() &&
-               role(in_world).owner == slot_of(body) && role(in_world).offset == offset;
-      };
-      bool right = is(body.in_world, {});
-      for (const Image& image : body.images) right = right && is(image.id, image.offset), ++images;
-      archive.require(right, "a body of a periodic world, or an image of it, is not there");
-    }
-    archive.require(world_.size() == size_ + images, "there is a body in the world of a periodic world that is none");
-    for (Real& body : reals_) {
-      if (body.alive) schedule(body);
-    }
-  }
-}
-
 #define KDS_INSTANTIATE(degree) template class PeriodicWorld<degree>;
-KDS_INSTANTIATE(1)
-KDS_INSTANTIATE(2)
-#undef KDS_INSTANTIATE
-#define KDS_INSTANTIATE(degree)                                       \
-  template void PeriodicWorld<degree>::archive(kds::detail::Writer&); \
-  template void PeriodicWorld<degree>::archive(kds::detail::Reader&);
 KDS_INSTANTIATE(1)
 KDS_INSTANTIATE(2)
 #undef KDS_INSTANTIATE

@@ -127,7 +127,8 @@ class PeriodicWorld final : private WorldListener<Degree> {
   /// belong; throws AuditFailure. O(n^2).
   void audit() const;
 
-  /// Saves or loads all that decides later events: see kds/framework/snapshot.hpp.
+  /// Saves or loads all that decides later events: see kds/framework/snapshot.hpp. The options must be the same, except
+  /// the seed and those that may differ in a World.
   template <class Archive>
   void archive(Archive& archive);
 
@@ -163,8 +164,9 @@ class PeriodicWorld final : private WorldListener<Degree> {
 
     template <class Archive>
     void archive(Archive& to) {
-      to(alive, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at, crossings, shift,
-         zones, images);
+      to(alive, in_world, inverse_mass, restitution, radius, orientation, last_contact, placed_at, crossings, shift);
+      for (Zone& zone : zones) to(zone.low, zone.high);
+      to(images);
     }
   };
   /// What a slot of the world is: a body, or an image of one.
@@ -200,14 +202,20 @@ class PeriodicWorld final : private WorldListener<Degree> {
   void wall(World<Degree>&, const WallEvent& event) override;
   void moved(World<Degree>&, BodyId id) override;
 
+  // periodic_snapshot.cpp: what has been loaded is what a periodic world can have saved
+  void check_loaded() const;
+  void check_loaded(const Real& body) const;
+
   // places.cpp: ends of the box and images
   Ends ends(const Real& body, int coordinate) const;
   bool follows(const Real& body, int coordinate) const;
   kds::Motion<Degree> coordinate(const Real& body, const Motion& motion, int which) const;
   Span span(const Real& body, int which) const { return span_of(body.zones[std::size_t(which)], ends(body, which)); }
   std::int64_t periods_into_box(double x, int axis) const;
+  std::int64_t periods_to_go(double x, int axis, int side) const;
   Offset way_into_box(const Motion& motion) const;
   void require_room(double radius) const;
+  double slack_of(double greatest_radius) const;
   void note_largest(double radius);
   void find_zones(Real& body);
   void find_layer_above(Real& body);

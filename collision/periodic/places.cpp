@@ -80,14 +80,21 @@ void PeriodicWorld<Degree>::require_room(double radius) const {
   }
 }
 
+/// Ends::slack. Precondition: there is room for bodies of this radius.
+template <int Degree>
+double PeriodicWorld<Degree>::slack_of(double greatest_radius) const {
+  double slack = slack_in_radii * greatest_radius;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (lattice_.periodic(axis)) slack = std::min(slack, (lattice_.period(axis) - 2 * greatest_radius) / 4);
+  }
+  return slack;
+}
+
 /// There is a body that is larger than all before it: all need their images sooner. Precondition: there is room for it.
 template <int Degree>
 void PeriodicWorld<Degree>::note_largest(double radius) {
   greatest_radius_ = radius;
-  slack_ = slack_in_radii * radius;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (lattice_.periodic(axis)) slack_ = std::min(slack_, (lattice_.period(axis) - 2 * radius) / 4);
-  }
+  slack_ = slack_of(radius);
   for (Real& body : reals_) {
     if (!body.alive) continue;
     find_zones(body);
@@ -140,17 +147,26 @@ bool PeriodicWorld<Degree>::correct(Real& body, int which) {
   return true;
 }
 
+/// The same of a coordinate that is beyond an end, -1 the lower one: by one at least. A body may be faster than a
+/// period in the time between two doubles.
+template <int Degree>
+std::int64_t PeriodicWorld<Degree>::periods_to_go(double x, int axis, int side) const {
+  const std::int64_t periods = periods_into_box(x, axis);
+  return side < 0 ? std::max<std::int64_t>(periods, 1) : std::min<std::int64_t>(periods, -1);
+}
+
 /// A body has left the box at an end, or its image in the layer above has.
 template <int Degree>
 void PeriodicWorld<Degree>::leave(Real& body, int which, int side) {
   if (which == layer_above) {
-    body.shift -= side;
+    const double before = coordinate(body, world_.motion(body.in_world), which)(now());
+    body.shift += periods_to_go(before, 0, side);
     const double x = coordinate(body, world_.motion(body.in_world), which)(now());
     body.zones[layer_above] = zone_at(x, ends(body, which));
     return;
   }
   const Motion before = world_.motion(body.in_world);
-  Offset by = along(which, -side);
+  Offset by = along(which, periods_to_go(before.axis(which)(now()), which, side));
   if (which == 1 && lattice_.slides()) by[0] = periods_into_box(lattice_.moved(before, by).position(now())[0], 0);
   world_.update_motion(body.in_world, lattice_.moved(before, by));
   ++counters_.wraps;
@@ -227,6 +243,7 @@ void PeriodicWorld<Degree>::add_image(Real& body, const Offset& offset) {
   image.restitution = body.restitution;
   image.category = world_.category(body.in_world) << image_bits;
   image.collides_with = world_.collides_with(body.in_world) >> image_bits;
+  image.group = world_.group(body.in_world);
   image.user_data = world_.user_data(body.in_world);
   const BodyId id = world_.add_body(image);
   set_role(id, slot_of(body), offset);

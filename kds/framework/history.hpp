@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <iterator>
 #include <limits>
@@ -26,6 +27,9 @@ namespace kds {
 /// All steps and edits must be made through it, or it does not know of them. Edits and listeners are called again when
 /// they are replayed, and must then do the same (replaying() is true then). Events and calls that are rolled back are
 /// forgotten: the run goes on from there. Simulator and parts are referred to, and must outlive it.
+///
+/// An exception of a listener comes out of the call; its event has happened, and counts. A snapshot is taken then, so
+/// that a return to a later time does not repeat the event, and its exception.
 ///
 /// With Simulator::set_window(), a step that finds no event looks ahead while the clock stays, so that several states
 /// of one clock differ in their horizon and in the failure times that are known up to it. roll_back() brings back one
@@ -65,10 +69,10 @@ class History {
   }
   /// Calls f(), which may edit the elements, plan pieces, and so on, at the clock, but must not move it. f is kept as
   /// long as it may be replayed, and everything that it refers to must live as long. If it throws, what it did before
-  /// is not recorded.
+  /// stays done, but f is not called again.
   void edit(std::function<void()> f) {
     keep_now_and_then();
-    f();
+    keep_if_it_throws(f, [] {});
     calls_.push_back({.limit = simulator_.now(), .edit = std::move(f)});
   }
 
@@ -134,7 +138,18 @@ class History {
   /// A step, which is recorded if it finds an event.
   bool step_to_event(double limit) {
     keep_now_and_then();
-    if (!simulator_.step(limit)) return false;
+    bool found = false;
+    const double clock = simulator_.now();
+    const std::uint64_t events = simulator_.counters().events;
+    const auto happened = [&] { return simulator_.now() != clock || simulator_.counters().events != events; };
+    keep_if_it_throws([&] { found = simulator_.step(limit); },
+                      [&] {
+                        if (happened()) record_event(limit);
+                      });
+    if (found) record_event(limit);
+    return found;
+  }
+  void record_event(double limit) {
     Call* const last = last_call();
     if (last && last->steps > 0 && !last->ended && last->limit == limit) {
       ++last->steps;
@@ -142,9 +157,23 @@ class History {
       calls_.push_back({.limit = limit, .steps = 1});
     }
     ++events_;
-    return true;
   }
 
+  /// What was done before an exception could not be repeated by the calls that are recorded, so it is saved.
+  template <class Work, class Record>
+  void keep_if_it_throws(const Work& work, const Record& record) {
+    try {
+      work();
+    } catch (...) {
+      record();
+      try {
+        keep();
+      } catch (const std::exception&) {
+        // What cannot be saved any more is unusable, and says so when it is used again.
+      }
+      throw;
+    }
+  }
   void keep_now_and_then() {
     if (events_ - kept_.back().events + calls_.size() - kept_.back().calls >= every_) keep();
   }

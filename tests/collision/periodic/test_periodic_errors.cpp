@@ -129,6 +129,18 @@ TEST_CASE("periodic world: filters count across the ends too") {
   CHECK(log.contacts == (collide ? 1 : 0));
 }
 
+TEST_CASE("periodic world: bodies of one group do not meet across the ends either") {
+  PeriodicOptions options;
+  options.max = {8, 8, 8};
+  const std::uint32_t group = GENERATE(0u, 3u, 4u);
+  Log<1> log;
+  PeriodicWorld<1> world(options, &log);
+  world.add_body({.shape = Sphere{0.5}, .motion = {{{{1, 4, 4}, {-1, 0, 0}}, 0}}, .group = 3});
+  world.add_body({.shape = Sphere{0.5}, .motion = {{{{7, 4, 4}, {1, 0, 0}}, 0}}, .group = group});
+  world.advance_to(2);
+  CHECK(log.contacts == (group == 3 ? 0 : 1));
+}
+
 TEST_CASE("periodic world: bodies that overlap at the start pass, and are told once") {
   PeriodicOptions options;
   options.max = {4, 4, 4};
