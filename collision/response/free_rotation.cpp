@@ -119,7 +119,7 @@ void FreeRotation::expand(double wanted) {
   valid_until_ = state_.time + span / rate_;
 }
 
-FreeRotation::TopSpins FreeRotation::top_spins() const {
+TopSpins FreeRotation::top_spins() const {
   const int axis = inertia_.symmetry, across = (axis + 1) % 3;
   Vector3d own = Vector3d::Zero();
   own[axis] = -own_momentum_[axis] * (inverse_[axis] - inverse_[across]);
@@ -129,16 +129,17 @@ FreeRotation::TopSpins FreeRotation::top_spins() const {
   return top;
 }
 
+Quaterniond TopSpins::carried(const Quaterniond& from, double t) const {
+  using certificates::turned_orientation;
+  const Quaterniond q = turned_orientation(from, precession, precession_rate, t);
+  return turned_orientation(q.conjugate(), own, own_rate, t).conjugate();
+}
+
 Quaterniond FreeRotation::orientation(double t) const {
   if (steady_) {
     return certificates::turned_orientation(state_.orientation, spin_of(angular_velocity(), state_.time), t);
   }
-  if (inertia_.symmetry >= 0) {
-    const TopSpins& top = top_spins_ ? *top_spins_ : top_spins();
-    using certificates::turned_orientation;
-    const Quaterniond q = turned_orientation(state_.orientation, top.precession, top.precession_rate, t);
-    return turned_orientation(q.conjugate(), top.own, top.own_rate, t).conjugate();
-  }
+  if (inertia_.symmetry >= 0) return (top_spins_ ? *top_spins_ : top_spins()).carried(state_.orientation, t);
   const double span = (t - state_.time) * rate_;
   Vector4d sum = quaternion_[terms_];
   for (std::size_t m = terms_; m-- > 0;) sum = sum * span + quaternion_[m];
@@ -149,13 +150,13 @@ Vector3d FreeRotation::angular_velocity() const {
   return turned(state_.orientation, inverse_.cwiseProduct(own_momentum_));
 }
 
-double FreeRotation::acceleration(double t) const {
-  if (steady_) return 0;
-  Vector3d momentum = momentum_[terms_];  // of a top turned about its axis, which changes no magnitude
+Vector3d FreeRotation::acceleration(double t) const {
+  if (steady_) return Vector3d::Zero();
+  Vector3d momentum = momentum_[terms_];
   const double span = (t - state_.time) * rate_;
   for (std::size_t m = terms_; m-- > 0;) momentum = momentum * span + momentum_[m];
   const Vector3d rates = inverse_moments_.cwiseProduct(momentum);
-  return norm(inverse_moments_.cwiseProduct(cross(momentum, rates))) * rate_ * rate_;
+  return rate_ * (rate_ * inverse_moments_.cwiseProduct(cross(momentum, rates)));
 }
 
 Quaterniond orientation_at(const PrincipalInertia& inertia, const RotationState& state, double t) {

@@ -30,6 +30,15 @@ struct RotationState {
   }
 };
 
+/// How a symmetric top turns that does not turn about a principal axis: about its angular momentum, and about its axis.
+struct TopSpins {
+  Spin precession, own;
+  Ball<DoubleDouble> precession_rate, own_rate;
+
+  /// Where a body is turned at t that turns like this, and at the start of the spins is turned as `from` says.
+  Eigen::Quaterniond carried(const Eigen::Quaterniond& from, double t) const;
+};
+
 /// In the axes of the world, rad/s. It is made with the same rounded inverse moments as inverse_inertia(): if it were
 /// not, each impulse would be wrong in the same sense, and the energy of a gas would drift.
 Eigen::Vector3d angular_velocity(const PrincipalInertia& inertia, const RotationState& state);
@@ -71,21 +80,18 @@ class FreeRotation {
   bool steady() const { return steady_; }
   /// That at the state's time, in the axes of the world, rad/s.
   Eigen::Vector3d angular_velocity() const;
-  /// The magnitude of the rate at which the angular velocity changes, rad/s^2. Precondition as of orientation().
-  double acceleration(double t) const;
+  /// The rate at which the angular velocity changes, in principal axes, rad/s^2. Precondition as of orientation(); of a
+  /// symmetric top t is the state's time.
+  Eigen::Vector3d acceleration(double t) const;
+  /// Of a symmetric top that does not turn about a principal axis. Its own spin is that as seen from where its angular
+  /// velocity and momentum stay as they are; so, as the body sees it, these turn at that rate.
+  TopSpins top_spins() const;
 
  private:
   static constexpr std::size_t most_terms = 24;
 
-  /// How a symmetric top turns: about its angular momentum, and about its axis.
-  struct TopSpins {
-    Spin precession, own;
-    Ball<DoubleDouble> precession_rate, own_rate;
-  };
-
   bool in_closed_form() const { return steady_ || inertia_.symmetry >= 0; }
   double size(std::size_t term) const;
-  TopSpins top_spins() const;
 
   const PrincipalInertia& inertia_;
   const RotationState& state_;

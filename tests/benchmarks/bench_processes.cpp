@@ -61,7 +61,7 @@ double ball_bytes() {
   const double none = bytes_of(parcel);
   auto& ball = parcel.bodies.bodies.emplace_back();
   ball.alive = true, ball.placed = place(Sphere{0.5}, Eigen::Quaterniond::Identity());
-  parcel.numbers.push_back(0), parcel.to_come.emplace_back(), parcel.met.push_back(0);
+  parcel.numbers.push_back(0), parcel.to_come.emplace_back(), parcel.resting.emplace_back();
   return bytes_of(parcel) - none;
 }
 /// Memory for a ball that a process stores, and in the world of a domain that knows it (bench_memory, at 0.25).

@@ -1,6 +1,7 @@
 // The search for the first contact of a mesh that turns: what waits in its queue, and how it is looked at.
 #pragma once
 
+#include "certificates/ball_separation.hpp"
 #include "collision/narrow_phase/turning/turning_mesh_search.hpp"
 
 #include <algorithm>
@@ -64,6 +65,18 @@ double TurningMeshSearch<Degree, Side>::Front::separated_until(double t) {
     if (t > horizon_ || !(static_cast<double>(part) >= worth)) return t;
     look(t);
   }
+}
+
+/// A time from which on the balls around the two are apart until the horizon, or this. What only moves would be looked
+/// at for as long as it flies, pair by pair, if nothing told that it does not come back.
+template <int Degree, class Side>
+double TurningMeshSearch<Degree, Side>::Front::near_until(double t) const {
+  const certificates::BallSeparation<Degree> balls{search_.motion_a_.path, search_.motion_b_.path,
+                                                   search_.units_a_.farthest, search_.units_b_.farthest};
+  const double meet = failure_time(balls, t, horizon_);
+  if (meet == never) return t;
+  const double part = recovery_time(balls, meet, horizon_);
+  return part < never && failure_time(balls, part, horizon_) == never ? part : horizon_;
 }
 
 /// By floats, and triangles by doubles.

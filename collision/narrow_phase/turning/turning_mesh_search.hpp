@@ -106,6 +106,7 @@ class TurningMeshSearch {
         : search_(search), horizon_(horizon), mode_(mode), view_(search.view(t0, horizon)) {
       const double from = separated_until(t0);
       if (from > horizon_) return;
+      if (view_.ahead < horizon_ - view_.time) horizon_ = near_until(from);
       // What most searches need.
       std::vector<Item> items;
       items.reserve(32), visits_.reserve(32), leaves_.reserve(16);
@@ -125,6 +126,7 @@ class TurningMeshSearch {
       return wait > horizon_ - view_.time ? never : next_down(view_.time + wait);
     }
     double separated_until(double t);
+    double near_until(double t) const;
     void look(double t) {
       if (t != view_.time) view_ = search_.view(t, horizon_);
     }

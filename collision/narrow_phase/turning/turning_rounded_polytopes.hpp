@@ -71,6 +71,12 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
   bool known_to_separate_nothing(int way) const {
     return way < first_corner_and_edge_ && Base::known_to_separate_nothing(way);
   }
+  /// Whether it is along two edges that are parallel but for 2^-10.
+  bool is_thin(const Frame& frame, int way) const {
+    if (way < this->faces() || way >= first_corner_and_edge_) return false;
+    const auto pair = this->edge_pair(way);
+    return !(norm(cross(frame.a.edges[pair.of_a], frame.b.edges[pair.of_b])) > 0x1p-10);
+  }
   /// Only ways of edges that are parallel can.
   template <class Vanishes>
   bool separates_nothing(int way, const Vanishes& vanishes) const {

@@ -105,6 +105,19 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     return unsure<Time::while_open>(view, way, stretch);
   }
 
+  /// How far to look ahead, s; for how much of that a condition of a way is broken for certain, all the time; whether
+  /// the way is along edges that are parallel but for 2^-10.
+  double stretch(const TurningView<Degree>& view, double most) const {
+    return view.stretch(this->hull_a_.radius + this->hull_b_.radius, most);
+  }
+  double closed_wait(const TurningView<Degree>& view, int way, double stretch) const;
+  bool is_thin(const TurningView<Degree>& view, int way) const {
+    if (way < 4) return false;
+    const auto k = static_cast<std::size_t>(way - 4) / 2;
+    const Eigen::Vector3d u = view.in_world_a(this->hull_a_.edges[k / 3]);
+    return !(norm(cross(u, view.in_world_b(this->hull_b_.edges[k % 3]))) > 0x1p-10);
+  }
+
   /// Bits of the corners of b that may be in the plane of a at the time of the view, and of those of a in that of b.
   std::array<unsigned, 2> near_planes(const TurningView<Degree>& view) const {
     const auto &a = this->hull_a_, &b = this->hull_b_;
@@ -162,8 +175,14 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
     ahead,      ///< for a stretch
     while_open  ///< for a stretch, of conditions that hold at its beginning
   };
+  template <class Value, class Note>
+  bool every_value(const TurningView<Degree>& view, int way, double stretch, const Note& note) const;
   template <Time Which>
   Conditions unsure(const TurningView<Degree>& view, int way, double stretch) const;
+  /// The longest stretch that there is.
+  double longest(const TurningView<Degree>& view) const {
+    return this->stretch(view, std::numeric_limits<double>::max());
+  }
 
   /// Of the ways of planes.
   template <class Test>
@@ -185,22 +204,22 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
 
 // ---------------------------------------------------------------------------------------------------------------------
 
+/// Calls note(number, f, doubt, bounds, to_longest) for each condition: with a value, or a jet where the time ahead
+/// counts; `doubt`: by which the direction is off; bounds for the stretch, to_longest() for the longest. False where
+/// these do not hold.
+///
 /// Each condition is n . p, or n . v, with unit vectors that turn: what exact signs are taken of, times a positive
 /// number. Normals are off by the doubt of their hull, and stay so as they turn.
-///
-/// Of a condition f that holds just after the time of the view: f(x) >= x (f' + f'' x / 2 - third x^2 / 6). The errors
-/// of f' and f'' are such that times the longest stretch L that there is, and its square, they are no more than those
-/// of f: so f' is off by e / L, and f'' by 2 e / L^2, 3 e / L in all, where e is what f may be off by until L.
 template <int Degree>
-template <typename TurningTriangles<Degree>::Time Which>
-auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, double stretch) const -> Conditions {
-  constexpr bool now = Which == Time::now;
-  using Value = std::conditional_t<now, double, Jet>;
+template <class Value, class Note>
+bool TurningTriangles<Degree>::every_value(const TurningView<Degree>& view, int way, double stretch,
+                                           const Note& note) const {
+  constexpr bool now = std::is_same_v<Value, double>;
   using Vector = std::conditional_t<now, Eigen::Vector3d, VectorJet>;
   const auto& hull_a = this->hull_a_;
   const auto& hull_b = this->hull_b_;
-  const double longest = view.stretch(hull_a.radius + hull_b.radius, std::numeric_limits<double>::max());
-  if (!view.certain || !(stretch <= longest)) return all(way);
+  const double longest = this->longest(view);
+  if (!view.certain || !(stretch <= longest)) return false;
   const auto moving = [](const Eigen::Vector3d& x, const Eigen::Vector3d& spin) -> Vector {
     if constexpr (now) {
       return x;
@@ -211,24 +230,6 @@ auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, 
   const auto of_a = [&](const Eigen::Vector3d& x) { return moving(view.in_world_a(x), view.spin_a); };
   const auto of_b = [&](const Eigen::Vector3d& x) { return moving(view.in_world_b(x), view.spin_b); };
   const double sense = way % 2 != 0 ? 1 : -1;
-  Conditions unsure = 0;
-  // `doubt`: by which the direction is off. `bounds`: for the stretch; `to_longest()`: for the longest.
-  const auto note = [&](int number, const Value& f, double doubt, const TurningBounds& bounds, const auto& to_longest) {
-    const double less = bounds.rounding + doubt * bounds.lengths;
-    bool sure = false;
-    if constexpr (now) {
-      sure = f > less;
-    } else {
-      sure = f.value > less && positive_for({f.value - less, f.rate, f.bend}, bounds.third, stretch) >= stretch;
-      if (Which == Time::while_open && !sure && f.rate > 0) {
-        const TurningBounds most = to_longest();
-        const double error = most.rounding + doubt * most.lengths;
-        const Jet slope{f.rate - 3 * error / longest, 0.5 * f.bend, -bounds.third / 3};
-        sure = slope.value > 0 && positive_for(slope, 0, stretch) >= stretch;
-      }
-    }
-    if (!sure) unsure |= Conditions{1} << number;
-  };
   const auto bounds_for = [&](double rates, double until) {
     return TurningBounds(view, rates, hull_a.radius, hull_b.radius, until);
   };
@@ -250,18 +251,57 @@ auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, 
       const Value f = face_of_a ? plane + dot(n, of_b(hull_b.points[i])) : plane - dot(n, of_a(hull_a.points[i]));
       note(static_cast<int>(i), f, face.doubt, bounds, [&] { return bounds_for(rates, longest); });
     }
-    return unsure;
+    return true;
   }
   const auto k = static_cast<std::size_t>(way - 4) / 2;
   const Vector u = of_a(hull_a.edges[k / 3]), v = of_b(hull_b.edges[k % 3]);
   const double rates = view.rate_a + view.rate_b;
   const Vector apart = between + of_b(hull_b.points[k % 3]) - of_a(hull_a.points[k / 3]);
-  note(0, sense * dot(cross(u, v), apart), 0, bounds_for(rates, stretch), [&] { return bounds_for(rates, longest); });
+  note(0, sense * dot(cross(u, v), apart), 0.0, bounds_for(rates, stretch), [&] { return bounds_for(rates, longest); });
   const TurningBounds of_directions(rates * rates * rates * (1 + 0x1p-40), PairFrame<Degree>::rounding, 1);
   const auto same = [&] { return of_directions; };
   note(1, sense * dot(of_a(hull_a.normals[0]), v), hull_a.doubt, of_directions, same);
   note(2, sense * dot(of_b(hull_b.normals[0]), u), hull_b.doubt, of_directions, same);
-  return unsure;
+  return true;
+}
+
+/// Of a condition f that holds just after the time of the view: f(x) >= x (f' + f'' x / 2 - third x^2 / 6). The errors
+/// of f' and f'' are such that times the longest stretch L that there is, and its square, they are no more than those
+/// of f: so f' is off by e / L, and f'' by 2 e / L^2, 3 e / L in all, where e is what f may be off by until L.
+template <int Degree>
+template <typename TurningTriangles<Degree>::Time Which>
+auto TurningTriangles<Degree>::unsure(const TurningView<Degree>& view, int way, double stretch) const -> Conditions {
+  constexpr bool now = Which == Time::now;
+  using Value = std::conditional_t<now, double, Jet>;
+  Conditions unsure = 0;
+  const auto note = [&](int number, const Value& f, double doubt, const TurningBounds& bounds, const auto& to_longest) {
+    const double less = bounds.rounding + doubt * bounds.lengths;
+    bool sure = false;
+    if constexpr (now) {
+      sure = f > less;
+    } else {
+      sure = f.value > less && positive_for({f.value - less, f.rate, f.bend}, bounds.third, stretch) >= stretch;
+      if (Which == Time::while_open && !sure && f.rate > 0) {
+        const TurningBounds most = to_longest();
+        const double error = most.rounding + doubt * most.lengths;
+        const Jet slope{f.rate - 3 * error / longest(view), 0.5 * f.bend, -bounds.third / 3};
+        sure = slope.value > 0 && positive_for(slope, 0, stretch) >= stretch;
+      }
+    }
+    if (!sure) unsure |= Conditions{1} << number;
+  };
+  return every_value<Value>(view, way, stretch, note) ? unsure : all(way);
+}
+
+template <int Degree>
+double TurningTriangles<Degree>::closed_wait(const TurningView<Degree>& view, int way, double stretch) const {
+  double wait = 0;
+  every_value<Jet>(view, way, stretch, [&](int, const Jet& f, double doubt, const TurningBounds& bounds, const auto&) {
+    const double more = bounds.rounding + doubt * bounds.lengths;
+    const Jet broken{-(f.value + more), -f.rate, -f.bend};
+    if (broken.value > 0) wait = std::max(wait, positive_for(broken, bounds.third, stretch));
+  });
+  return wait;
 }
 
 }  // namespace kds::collision

@@ -51,11 +51,12 @@ template <class Motion>
 void Tumbling<Motion>::scale(BodySlot slot, double factor) {
   of_[slot]->inertia.moments *= factor;
   of_[slot]->state.momentum *= factor;
+  of_[slot]->pieces.reset();
 }
 
 template <class Motion>
 void Tumbling<Motion>::begin(BodySlot slot, const RotationPiece& piece) {
-  of_[slot]->ahead = piece.orientation;
+  of_[slot]->to = piece.to, of_[slot]->ahead = piece.ahead;
   of_[slot]->astray = false;
   set_end(slot, piece.end);
 }
@@ -86,8 +87,7 @@ Motion Tumbling<Motion>::take_up(BodySlot slot, const Motion& given, double t) {
   body.state.orientation = of_axes(body.inertia, orientation);
   body.state.momentum = angular_momentum(body.inertia, body.state.orientation, given.angular_velocity);
   body.state.time = t;
-  const RotationPiece piece =
-      rotation_piece(body.inertia, body.state, t, body.state.orientation, body.state.orientation, error_);
+  const RotationPiece piece = leading_piece(body.inertia, body.state, body.state.orientation, error_);
   begin(slot, piece);
   return motion_of(body, orientation, piece, t);
 }
@@ -116,10 +116,18 @@ Motion Tumbling<Motion>::catch_up(BodySlot slot, double t) {
   --alone_;
   Body& body = *of_[slot];
   if (!(body.ends < t)) return set_end(slot, body.ends), bodies_.motion(slot);
-  const PiecesInARow row = pieces_until(t, body.inertia, body.state, body.ends, body.ahead, error_);
+  return next_pieces(slot, t);
+}
+
+/// The last of the pieces after the present one that starts before t.
+template <class Motion>
+Motion Tumbling<Motion>::next_pieces(BodySlot slot, double t) {
+  Body& body = *of_[slot];
+  const RotationPiece present{.to = body.to, .ahead = body.ahead};
+  const PiecesInARow row = pieces_until(t, body.inertia, body.state, body.ends, present, error_, body.pieces);
   counters_.rotation_pieces += row.count, counters_.motion_updates += row.count;
   begin(slot, row.last);
-  return motion_of(body, of_body(body.inertia, row.from), row.last, row.start);
+  return motion_of(body, of_body(body.inertia, row.last.from), row.last, row.start);
 }
 
 template <class Motion>
@@ -131,28 +139,28 @@ typename Tumbling<Motion>::Piece Tumbling<Motion>::take_next() {
     const Motion motion = catch_up(slot, t);
     if (body.ends > t) return {slot, motion};
   }
-  if (body.inertia.symmetry < 0) body.state.orientation = body.ahead, body.state.time = t;
+  if (!body.astray) return {slot, next_pieces(slot, next_up(t))};
   ++counters_.rotation_pieces, ++counters_.motion_updates;
-  if (!body.astray) {
-    const RotationPiece piece = rotation_piece(body.inertia, body.state, t, body.ahead, body.ahead, error_);
-    const Motion motion = motion_of(body, of_body(body.inertia, body.ahead), piece, t);
-    begin(slot, piece);
-    return {slot, motion};
-  }
   const Quaterniond orientation = bodies_.motion(slot).restarted(t).orientation;
-  const RotationPiece piece = way_back(slot, orientation, t);
+  reach(body, t);
+  const RotationPiece piece = way_back(slot, orientation);
   begin(slot, piece);
   return {slot, motion_of(body, orientation, piece, t)};
+}
+
+/// Its free rotation is at t from now on.
+template <class Motion>
+void Tumbling<Motion>::reach(Body& body, double t) {
+  if (!(t > body.state.time)) return;
+  body.state.orientation = orientation_at(body.inertia, body.state, t);
+  body.state.time = t;
 }
 
 template <class Motion>
 void Tumbling<Motion>::meet(BodySlot slot, const Quaterniond& as_it_moves, double t) {
   constexpr double farthest = 1.75;  // of the option: a piece that leads back in part adds a quarter
   Body& body = *of_[slot];
-  if (t > body.state.time) {
-    body.state.orientation = orientation_at(body.inertia, body.state, t);
-    body.state.time = t;
-  }
+  reach(body, t);
   const Quaterniond orientation = of_axes(body.inertia, as_it_moves);
   if (!(angle_between(body.state.orientation, orientation) > farthest * error_)) return;
   body.state.orientation = unit(orientation);
@@ -169,13 +177,10 @@ Eigen::Matrix3d Tumbling<Motion>::inverse_inertia(BodySlot slot) const {
   return collision::inverse_inertia(of_[slot]->inertia, of_[slot]->state.orientation);
 }
 
-/// A bulge of a quarter of the option keeps a piece that begins off by the option, or by twice that, from being off by
-/// more: d (1 - s) + 4 (error / 4) s (1 - s) <= d for d >= error.
 template <class Motion>
-RotationPiece Tumbling<Motion>::way_back(BodySlot slot, const Quaterniond& as_it_moves, double t) const {
+RotationPiece Tumbling<Motion>::way_back(BodySlot slot, const Quaterniond& as_it_moves) const {
   const Body& body = *of_[slot];
-  const Quaterniond& free = body.state.time == t ? body.state.orientation : body.ahead;
-  return rotation_piece(body.inertia, body.state, t, free, of_axes(body.inertia, as_it_moves), error_ / 4);
+  return leading_piece(body.inertia, body.state, of_axes(body.inertia, as_it_moves), error_);
 }
 
 /// A piece that does not lead back at all is off by a h^2 / 2 more at its end, four times the bulge; a piece half as
@@ -187,7 +192,6 @@ void Tumbling<Motion>::follow(BodySlot slot, const RotationPiece& piece, bool wh
   Body& body = *of_[slot];
   body.astray = true;
   set_end(slot, std::max(t + (piece.end - t) / 2, next_up(t)));
-  body.ahead = orientation_at(body.inertia, body.state, body.ends);
 }
 
 template <class Motion>
@@ -232,7 +236,8 @@ void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies
     const PrincipalInertia& inertia = body.inertia;
     need(inertia.moments.allFinite() && inertia.moments.minCoeff() > 0, "its moments are not > 0");
     need(inertia.symmetry >= -1 && inertia.symmetry < 3, "has no such axis");
-    need(is_rotation(inertia.axes) && is_rotation(body.state.orientation) && is_rotation(body.ahead),
+    need(is_rotation(inertia.axes) && is_rotation(body.state.orientation) && is_rotation(body.ahead) &&
+             is_rotation(body.to),
          "a quaternion is not of length 1");
     need(body.state.momentum.allFinite(), "its angular momentum is not finite");
     need(body.path.finite(), "its path is not finite");

@@ -28,14 +28,18 @@ namespace detail {
 template <class Motion>
 struct Tumbler {
   PrincipalInertia inertia;
-  /// Its free rotation: the angular momentum, and the orientation at the last contact or, for bodies that are not
-  /// symmetric tops, where the present piece begins. The orientation of the motion differs from it by up to
+  /// Its free rotation: the angular momentum, and the orientation where the present piece begins or, for symmetric
+  /// tops, an earlier one, but not before the last contact. The orientation of the motion differs from it by up to
   /// WorldOptions::orientation_error.
   RotationState state{};
   PathOf<Motion> path{};  ///< as it was given or came out of an impulse: pieces restart it, but do not add up roundings
   double ends = never;    ///< when the present piece does
-  Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();  ///< the orientation of the free rotation then
-  bool astray = false;                                        ///< whether the present piece ends elsewhere
+  /// The orientation of its motion then, if not astray; of tops only where the free rotation is at the start of the
+  /// piece.
+  Eigen::Quaterniond to = Eigen::Quaterniond::Identity();
+  Eigen::Quaterniond ahead = Eigen::Quaterniond::Identity();  ///< that of the free rotation; not of tops
+  bool astray = false;                                        ///< whether the present piece leads elsewhere
+  std::optional<TopPieces> pieces{};                          ///< what is known of those of a top; no state
 };
 
 template <class Archive, class Motion>
@@ -45,7 +49,7 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
   };
   image::vector(archive, body.inertia.moments), quaternion(body.inertia.axes), archive(body.inertia.symmetry);
   image::vector(archive, body.state.momentum), quaternion(body.state.orientation), archive(body.state.time);
-  archive(body.path, body.ends), quaternion(body.ahead), archive(body.astray);
+  archive(body.path, body.ends), quaternion(body.to), quaternion(body.ahead), archive(body.astray);
 }
 
 }  // namespace detail
@@ -54,11 +58,10 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 /// that stand for that.
 ///
 /// A body has an angular momentum, which is changed by contacts and callers only, and an orientation that follows from
-/// it by Euler's equations (free_rotation.hpp): its free rotation. Its motion is a sequence of pieces. Each begins and
-/// ends with the orientation of the free rotation, and differs from it by at most WorldOptions::orientation_error in
-/// between (rotation_piece.hpp). Contact times are those of the pieces. Impulses are calculated with the free rotation,
-/// so that energy and momenta are conserved. The piece after a contact begins with the orientation that the motion has,
-/// and leads back to the free rotation.
+/// it by Euler's equations (free_rotation.hpp): its free rotation. Its motion is a sequence of pieces, which
+/// differ from the free rotation by at most WorldOptions::orientation_error (rotation_piece.hpp). Contact times are
+/// those of the pieces. Impulses are calculated with the free rotation, so that energy and momenta are conserved. The
+/// piece after a contact begins with the orientation that the motion has, and leads back to the free rotation.
 ///
 /// Laws:
 /// 1. The angular momentum is the same, to the bit, from one contact to the next.
@@ -72,7 +75,7 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 /// left alone for a while, and its pieces are made one after the other when it is looked at again. They are the same.
 ///
 /// Cost: nothing for other bodies; 1 us a piece and O(log n), beside the tests of its pairs; 0.5 us a piece of a body
-/// that is left alone.
+/// that is left alone, and of a symmetric top that is 1 us for all of its pieces together.
 template <class Motion>
 class Tumbling {
  public:
@@ -132,7 +135,7 @@ class Tumbling {
   void push(BodySlot slot, const Eigen::Vector3d& angular_impulse) { of_[slot]->state.momentum += angular_impulse; }
 
   /// The piece that leads from this orientation back to the free rotation, at the time of meet() or of take_next().
-  RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves, double t) const;
+  RotationPiece way_back(BodySlot slot, const Eigen::Quaterniond& as_it_moves) const;
   /// The body moves by that piece from now on; or, if it cannot turn back that fast, makes a part of that turn, in half
   /// the time.
   void follow(BodySlot slot, const RotationPiece& piece, bool whole, double t);
@@ -197,6 +200,8 @@ class Tumbling {
   void become(const Image& image);
 
  private:
+  static void reach(Body& body, double t);
+  Motion next_pieces(BodySlot slot, double t);
   void begin(BodySlot slot, const RotationPiece& piece);
   void set_end(BodySlot slot, double end);
   Motion motion_of(const Body& body, const Eigen::Quaterniond& orientation, const RotationPiece& piece, double t) const;

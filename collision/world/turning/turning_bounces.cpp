@@ -246,7 +246,7 @@ void TurningBounces<Motion>::turn_back(BodySlot a, BodySlot b, Motion& motion_a,
   Motion back_a = motion_a, back_b = motion_b;
   const auto look = [&](BodySlot slot, Motion& back, std::optional<RotationPiece>& piece) {
     if (!precesses(slot)) return;
-    piece = tumbling_.way_back(slot, back.orientation, t);
+    piece = tumbling_.way_back(slot, back.orientation);
     back.angular_velocity = piece->angular_velocity;
   };
   look(a, back_a, piece_a), look(b, back_b, piece_b);

@@ -68,7 +68,7 @@ Collapse TurningBounces<Motion>::part_together(BodySlot a, BodySlot b, const Con
       tumbling_.push(slot, bodies[i].angular_impulse);
       tumbling_.set_path(slot, motion.path);
       motion.angular_velocity = tumbling_.angular_velocity(slot);
-      tumbling_.follow(slot, tumbling_.way_back(slot, motion.orientation, t), false, t);
+      tumbling_.follow(slot, tumbling_.way_back(slot, motion.orientation), false, t);
     }
     ++counters_.motion_updates;
     motions_.set(slot, motion, false);

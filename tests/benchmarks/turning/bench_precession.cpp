@@ -1,6 +1,7 @@
 // Bodies that precess: pieces a radian, time for a piece, and what becomes of the energy.
 #include "collision/response/rotation_piece.hpp"
 #include "collision/world.hpp"
+#include "kds/arithmetic/lattice.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/collision/sample_meshes.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -12,6 +13,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 namespace {
 
@@ -41,13 +43,11 @@ void pieces(const Kind& kind) {
       tests::Random random(seed);
       const Quaterniond upright = Quaterniond::Identity();
       RotationState state{angular_momentum(inertia, upright, random_vector(random)), upright, 0};
-      Quaterniond from = upright;
-      double t = 0;
-      while (t < 50) {
-        const RotationPiece piece = rotation_piece(inertia, state, t, from, from, error);
+      RotationPiece piece = leading_piece(inertia, state, upright, error);
+      std::optional<TopPieces> known;
+      for (double t = piece.end; t < 50; t = piece.end) {
+        piece = pieces_until(next_up(t), inertia, state, t, piece, error, known).last;
         turned += piece.angular_velocity.norm() * (piece.end - t);
-        t = piece.end, from = piece.orientation;
-        if (inertia.symmetry < 0) state.orientation = from, state.time = t;
         ++count;
       }
     }
@@ -69,14 +69,12 @@ void drift(const Kind& kind) {
       return state.momentum.dot(angular_velocity(inertia, {state.momentum, q, 0}));
     };
     const double before = energy(state.orientation);
-    Quaterniond from = state.orientation;
-    double t = 0;
+    RotationPiece piece = leading_piece(inertia, state, state.orientation, 1e-3);
+    std::optional<TopPieces> known;
     for (int i = 0; i < 1'000'000; ++i) {
-      const RotationPiece piece = rotation_piece(inertia, state, t, from, from, 1e-3);
-      t = piece.end, from = piece.orientation;
-      if (inertia.symmetry < 0) state.orientation = from, state.time = t;
+      piece = pieces_until(next_up(piece.end), inertia, state, piece.end, piece, 1e-3, known).last;
     }
-    greatest = std::max(greatest, std::abs(energy(from) / before - 1));
+    greatest = std::max(greatest, std::abs(energy(orientation_at(inertia, state, piece.end)) / before - 1));
   }
   std::printf("%-22s  %.1e\n", kind.name, greatest);
 }
