@@ -31,6 +31,7 @@ struct RestingContact {
   bool alive = false;
   bool fresh = false;           ///< its speed of approach has still to be removed
   double ends = never;          ///< s, when nothing presses the two together from then on; `never` up to degree 2
+  double began = -never;        ///< s
   double left_behind = -never;  ///< s, the epoch of motions whose rounding looks like a new contact
 
   // In a cluster.
@@ -48,8 +49,8 @@ struct RestingContact {
 /// All of it but what walks need.
 template <class Archive>
 void archive_members(Archive& archive, RestingContact& c) {
-  archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.left_behind, c.solved, c.depth, c.gap, c.room,
-          c.since, c.aim, c.ends);
+  archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.began, c.left_behind, c.solved, c.depth, c.gap,
+          c.room, c.since, c.aim, c.ends);
   image::vector(archive, c.normal), image::vector(archive, c.point);
 }
 
@@ -60,6 +61,7 @@ void check_numbers(const RestingContact& c, double now, const Need& need) {
   constexpr double normal_rounding = 0x1p-40;
   need(std::abs(c.normal.norm() - 1) <= normal_rounding, "its normal has no unit length");
   need(std::isfinite(c.push) && std::isfinite(c.solved), "its push or rate is not finite");
+  need(image::is_past(c.began, now), "it has not begun");
   need(c.depth >= 0 && std::isfinite(c.depth), "its depth is negative or not finite");
   need(c.point.allFinite(), "its point is not finite");
   need(std::isfinite(c.gap) && c.room >= 0 && std::isfinite(c.room) && std::isfinite(c.aim) &&

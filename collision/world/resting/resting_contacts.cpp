@@ -82,8 +82,23 @@ void RestingContacts<Motion>::add(const Contact& contact) {
   const Slot slot = give_slot(contact);
   contacts_[slot].alive = true;
   contacts_[slot].fresh = true;
+  contacts_[slot].began = clock_.now;
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id == no_body || !bodies_.fixed(id)) continue;
+    auto& listed = of_[id].contacts;
+    for (std::size_t i = listed.size() - 1; i > 0 && began_before(slot, listed[i - 1]); --i) {
+      std::swap(listed[i], listed[i - 1]);
+    }
+  }
   contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
   listener_->tell_resting(true, contacts_[slot]);
+}
+
+/// What a fixed body carries is solved for in this order, which does not depend on the slots of contacts.
+template <class Motion>
+bool RestingContacts<Motion>::began_before(Slot x, Slot y) const {
+  const detail::RestingRank rank{&contacts_, &bodies_.keys()};
+  return contacts_[x].began != contacts_[y].began ? contacts_[x].began < contacts_[y].began : rank(x) < rank(y);
 }
 
 /// A slot with the contact, which its bodies list.

@@ -243,9 +243,9 @@ class RestingContacts {
  private:
   /// The state of a body.
   struct Member {
-    std::vector<Slot> contacts;
-    std::uint64_t island = 0;  ///< the last island in which it was found
-    std::uint32_t place = 0;   ///< in that
+    std::vector<Slot> contacts;  ///< of a fixed body in the order of began_before()
+    std::uint64_t island = 0;    ///< the last island in which it was found
+    std::uint32_t place = 0;     ///< in that
     bool disturbed = false;
     bool moved = false;         ///< of a fixed one that is disturbed: its motion has changed
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
@@ -269,6 +269,7 @@ class RestingContacts {
   Slot find_among(BodySlot a, BodySlot b, int wall) const;
   Slot find_like(const Contact& contact) const;
   Slot give_slot(const Contact& contact);
+  bool began_before(Slot x, Slot y) const;
   Slot first_release() const;
   bool is_carried(BodySlot id) const;
   bool carries_unsteady(BodySlot id);

@@ -103,6 +103,11 @@ void RestingContacts<Motion>::go_on() {
   for (BodySlot id = 0; id < kept_.size(); ++id) {
     if (bodies_.alive(id)) go_on_from(id, kept_[id], slot_of);
   }
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    auto& listed = of_[id].contacts;
+    if (listed.empty() || !bodies_.fixed(id)) continue;
+    std::stable_sort(listed.begin(), listed.end(), [this](Slot x, Slot y) { return began_before(x, y); });
+  }
   kept_.clear();
 }
 

@@ -50,7 +50,12 @@ TEMPLATE_TEST_CASE_SIG("Domains: what rests on fixed bodies and walls has the ev
   Seen seen;
   compare_tables<Degree>(1, 60, 8, seen);
   INFO(seen.text());
-  CHECK(seen.events > 1000);
+  CHECK(seen.events > 5000);
+  CHECK(seen.divided > 20);
+  CHECK(seen.windows > 60);
+  CHECK(seen.corrected > 20);
+  CHECK(seen.rests > 500);
+  CHECK(seen.tables > 5);
 }
 
 TEST_CASE("Domains: balls that roll about on a floor are divided, and none of it is run as one world", "[parallel]") {
