@@ -5,6 +5,7 @@
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape_archive.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/saved_motion.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
@@ -175,15 +176,22 @@ void Bodies<Motion>::Image::check(double now) const {
     check_shape(body.placed, slot);
     need(!body.self_contacts || collision::bends(body.placed.shape), "meets itself, and does not bend");
     need(body.motion.finite(), "its motion is not finite");
+    need(image::can_have_come_about(path_of(body.motion)), "its motion is out of range");
+    if constexpr (turns<Motion>) {
+      need(image::can_have_come_about(body.motion.angular_velocity), "its angular velocity is beyond 2^450");
+    }
     need(!body.entered || path_of(body.motion).start <= now, "its motion begins after now");
-    const bool has_mass = std::isfinite(body.mass) && body.mass > 0 && body.inverse_mass == 1 / body.mass;
-    need(has_mass || body.inverse_mass == 0, "its mass is not > 0, or not that of its inverse");
+    const bool has_mass =
+        body.mass >= smallest_size && body.mass <= largest_magnitude && body.inverse_mass == 1 / body.mass;
+    need(has_mass || body.inverse_mass == 0, "its mass is not in [2^-205, 2^205], or not that of its inverse");
     need(body.restitution >= 0 && body.restitution <= 1, "its restitution is not in [0, 1]");
     need(body.volume == BoundingVolume::shape || body.volume == BoundingVolume::sphere, "its volume is unknown");
     need(body.meetings <= std::numeric_limits<std::uint32_t>::max(), "it has met too many others");
     need(image::is_past(body.burst_start, now), "its meetings are counted from a time after now");
-    need(body.force.allFinite(), "its acceleration is not finite");
-    need(std::isfinite(body.inverse_inertia) && body.inverse_inertia >= 0, "its inertia is not > 0");
+    need(body.force.allFinite() && body.force.cwiseAbs().maxCoeff() <= 2 * largest_magnitude,
+         "its acceleration is not finite, or out of range");
+    need(body.inverse_inertia == 0 || image::is_moment(body.inverse_inertia),
+         "its inertia is not > 0, or out of range");
     need(body.friction >= 0 && body.friction <= largest_magnitude, "its friction is not in [0, 2^205]");
     need(std::abs(body.tangential_restitution) <= 1, "its tangential restitution is not in [-1, 1]");
     need(body.rolling_friction >= 0 && body.rolling_friction <= largest_magnitude,

@@ -64,6 +64,8 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
     } else {
       need(bodies.before(contact.a, contact.b) && bodies.entered(contact.b) && contact.wall == -1,
            "is not of two bodies in the world");
+      need(bodies.bodies[contact.a].inverse_mass > 0 || bodies.bodies[contact.b].inverse_mass > 0,
+           "is of two bodies that are fixed");
       need(options.response == Response::elastic, "is of two bodies in a mode without resting contacts");
     }
     detail::check_numbers(contact, now, need);

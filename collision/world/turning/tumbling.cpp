@@ -4,6 +4,7 @@
 #include "collision/vectors.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/queue_room.hpp"
+#include "collision/world/saved_motion.hpp"
 #include "collision/world/turning/turning_extents.hpp"
 #include "kds/audit.hpp"
 
@@ -234,14 +235,19 @@ void Tumbling<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies
     };
     need(bodies.alive(slot), "is of no body");
     const PrincipalInertia& inertia = body.inertia;
-    need(inertia.moments.allFinite() && inertia.moments.minCoeff() > 0, "its moments are not > 0");
+    for (const double moment : inertia.moments) {
+      need(image::is_moment(moment), "its moments are not > 0, or out of range");
+    }
     need(inertia.symmetry >= -1 && inertia.symmetry < 3, "has no such axis");
     need(is_rotation(inertia.axes) && is_rotation(body.state.orientation) && is_rotation(body.ahead) &&
              is_rotation(body.to),
          "a quaternion is not of length 1");
     need(body.state.momentum.allFinite(), "its angular momentum is not finite");
-    need(body.path.finite(), "its path is not finite");
-    need(body.state.time <= now && image::is_to_come(body.ends, now), "its piece is over, or to begin");
+    need(image::can_have_come_about(collision::angular_velocity(inertia, body.state)),
+         "its free angular velocity is beyond 2^450");
+    need(image::can_have_come_about(body.path), "its path is not finite, or out of range");
+    need(std::isfinite(body.state.time) && body.state.time <= now && image::is_to_come(body.ends, now),
+         "its piece is over, or to begin");
   }
 }
 
