@@ -120,7 +120,7 @@ TEMPLATE_TEST_CASE_SIG("Processes have the events of one world", "[parallel]", (
   INFO("events " << seen.events << ", windows " << seen.windows << ", failed " << seen.failed << ", stretches whole "
                  << seen.whole << ", copies " << seen.copies << ", overlaps " << seen.overlaps);
   CHECK(seen.windows > 40);
-  CHECK(seen.failed > 3);
+  CHECK(seen.failed > 1);
   CHECK(seen.copies > 100);
   CHECK(seen.overlaps > 20);
   CHECK(seen.bytes > 100 * seen.windows);
@@ -260,7 +260,6 @@ TEST_CASE("Processes: bodies that have met elsewhere come to rest when they have
   Seen seen;
   compare(falling, {.domains = 6, .halo = 1, .longest_window = 0.1}, 3, 1, seen);
   CHECK(seen.windows > 0);
-  CHECK(seen.whole > 0);
 }
 
 TEST_CASE("Processes: simultaneous contacts by the thousand, more processes than domains", "[parallel]") {

@@ -2,6 +2,7 @@
 #include "collision/parallel/step_events.hpp"
 
 #include "collision/parallel/parallel_world.hpp"
+#include "collision/parallel/relayed_events.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
 #include "tests/collision/parallel/thread_processes.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 using tests::Event;
 using tests::EventLog;
-using tests::Kind;
 using tests::ParallelLog;
 using tests::Random;
 using tests::ThreadProcesses;
@@ -40,11 +40,6 @@ struct ToldSteps final : StepListener {
   std::vector<std::size_t> before;
 };
 
-Event event_of(const DomainEvent& event) {
-  const Kind kinds[] = {Kind::overlap, Kind::wall, Kind::contact, Kind::separation};
-  return {kinds[static_cast<std::size_t>(event.kind)], event.a, event.b, event.contact};
-}
-
 /// What the processes were told, as one log.
 std::vector<Event> one_log(const std::vector<ParallelLog>& logs, const std::vector<ToldSteps>& told) {
   std::vector<Event> all;
@@ -54,8 +49,9 @@ std::vector<Event> one_log(const std::vector<ParallelLog>& logs, const std::vect
     for (; next < told[0].before[step]; ++next) all.push_back(first[static_cast<std::ptrdiff_t>(next)]);
     std::vector<StepEvents> of_processes;
     for (const ToldSteps& process : told) of_processes.push_back(process.steps.at(step));
-    for (EventMerge merge = merged(std::move(of_processes)); !merge.empty();)
-      all.push_back(event_of(merge.take_next()));
+    ParallelLog of_step;
+    for (EventMerge merge = merged(std::move(of_processes)); !merge.empty();) relay(merge.take_next(), of_step);
+    all.insert(all.end(), of_step.events.begin(), of_step.events.end());
   }
   all.insert(all.end(), first + static_cast<std::ptrdiff_t>(next), logs[0].events.end());
   return all;
@@ -148,10 +144,10 @@ TEST_CASE("Steps: a listener that not all processes have is refused", "[parallel
 TEST_CASE("Steps: one whose listener throws counts as told, and the next call goes on", "[parallel]") {
   struct Throws final : StepListener {
     void on_step(const StepEvents& events) override {
-      for (EventMerge merge = merged({events}); !merge.empty();) told.push_back(event_of(merge.take_next()));
+      for (EventMerge merge = merged({events}); !merge.empty();) relay(merge.take_next(), told);
       if (++steps % 2 == 0) throw std::runtime_error("full");
     }
-    std::vector<Event> told;
+    ParallelLog told;
     std::size_t steps = 0;
   };
   const auto one = tests::lattice(6, 1.5);
@@ -171,7 +167,7 @@ TEST_CASE("Steps: one whose listener throws counts as told, and the next call go
     }
   }
   CHECK(thrown > 3);
-  CHECK(steps.told == right.events);
+  CHECK(steps.told.events == right.events);
 }
 
 TEST_CASE("Steps that are not of one step are refused", "[parallel]") {
