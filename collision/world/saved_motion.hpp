@@ -23,7 +23,7 @@ inline bool can_have_come_about(const Eigen::Vector3d& angular_velocity) {
 template <int Degree>
 bool can_have_come_about(const certificates::PointMotion<Degree>& path) {
   constexpr int range = 205, room = 40, greatest = 1023;  // exponents of 2
-  if (!path.finite()) return false;
+  if (!path.finite() || !(path.start >= -std::ldexp(1.0, range))) return false;
   for (int k = 0; k <= Degree; ++k) {
     const double most = std::ldexp(1.0, std::min(range * (Degree + 1 - k) + room, greatest));
     if (!(path.coefficients[static_cast<std::size_t>(k)].cwiseAbs().maxCoeff() <= most)) return false;

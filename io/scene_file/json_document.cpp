@@ -81,10 +81,12 @@ class DocumentBuilder final : public json::json_sax_t {
     return true;
   }
 
-  /// Of the value that comes next.
+  /// Of the value that comes next; of one that is nested deeper than anything in a scene the beginning, and dots.
   std::string path() const {
+    constexpr std::size_t most_levels = 32;
     std::string text;
     for (const Level& level : open_) {
+      if (&level == &open_[0] + most_levels) return text + "...";
       if (level.value->is_array()) {
         const bool is_within = &level != &open_.back();
         text += '[' + std::to_string(level.value->size() - (is_within ? 1 : 0)) + ']';

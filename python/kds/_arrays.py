@@ -21,7 +21,10 @@ def _shape_text(shape: tuple[int | None, ...]) -> str:
 
 
 def array_of(name: str, value: ArrayLike) -> NDArray[Any]:
-    """The value as an array of any type and shape."""
+    """The value as an array of any type and shape. What a masked array hides has no value here: it is refused."""
+    parts = value if isinstance(value, (list, tuple)) else (value,)
+    if any(isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part) for part in parts):
+        raise ValueError(f"{name}: has entries that are masked")
     try:
         return np.asarray(value)
     except (ValueError, TypeError) as error:
@@ -75,7 +78,7 @@ def vector(name: str, value: ArrayLike) -> Doubles:
 
 
 def number(name: str, value: Any) -> float:
-    if isinstance(value, (bool, np.bool_, str)):
+    if isinstance(value, (bool, np.bool_, str)) or np.ma.is_masked(value):
         raise ValueError(f"{name}: must be a number, and is {value!r}")
     try:
         return float(value)

@@ -388,4 +388,11 @@ TEST_CASE("scene reader: no mutation of a valid scene breaks it") {
   CHECK(scenes > 0);
 }
 
+TEST_CASE("scene reader: where something is nested without end is said in few words") {
+  const std::string error = error_of(std::string(100000, '['), "scene.json");
+  CHECK_THAT(error, Catch::StartsWith("scene.json: [0][0][0]"));
+  CHECK_THAT(error, Catch::Contains("[0]...: line 1, column 100001: "));
+  CHECK(error.size() < 400);
+}
+
 }  // namespace test_scene_reader_errors

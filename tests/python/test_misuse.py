@@ -52,6 +52,21 @@ class Misuse(unittest.TestCase):
         self.refused(r"function: must be callable", lambda: w.on(kds.EventKind.WALL, 3))
         self.refused(r"kind: must be a kds.EventKind, and is 99", lambda: w.on(99, print))
 
+    def test_masked_arrays(self):
+        w, places = self.world, np.zeros((4, 3))
+        hidden = np.ma.masked_array(places, mask=places == 0)
+        self.refused("^positions: has entries that are masked$", lambda: w.add_bodies(self.ball, hidden))
+        self.refused("^positions: has entries that are masked$", lambda: w.add_bodies(self.ball, list(hidden)))
+        self.refused("^velocities: has entries that are masked$", lambda: w.add_bodies(self.ball, places, hidden))
+        self.refused("^masses: has entries that are masked$", lambda: w.add_bodies(self.ball, places, masses=hidden[:, 0]))
+        self.refused("^mass: must be a number", lambda: w.add_body(self.ball, (0, 0, 0), mass=hidden[0, 0]))
+        self.refused("^position: has entries that are masked$", lambda: w.add_body(self.ball, (0, np.ma.masked, 0)))
+        self.refused("^bodies: has entries that are masked$",
+                     lambda: w.positions(np.ma.masked_array([0, 1], mask=[0, 1])))  # fmt: skip
+        self.refused("^coefficients: has entries that are masked$", lambda: kds.SortedList(hidden))
+        whole = kds.World()
+        self.assertEqual(len(whole.add_bodies(self.ball, np.ma.masked_array(3.0 * np.eye(3)))), 3)  # nothing is hidden
+
     def test_nothing_of_a_wrong_type_gets_through(self):
         """Each argument of each function in turn is of a type that fits nowhere: one line says so, and names it."""
         zero, world = (0, 0, 0), kds.World(degree=2)
