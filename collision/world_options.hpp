@@ -88,7 +88,7 @@ struct WorldOptions {
   /// of pieces with a constant angular velocity, so short that the orientation differs from the solution of Euler's
   /// equations by at most this much; after contacts in quick succession by at most twice as much. The errors of pieces
   /// do not accumulate, and energy and momenta do not depend on this option. With the default no point of a body is off
-  /// by more than a thousandth of its radius, for about ten pieces a radian; a hundredth of it costs ten times as many
+  /// by more than a thousandth of its radius, for about five pieces a radian; a hundredth of it costs ten times as many
   /// pieces (docs/turning.md).
   double orientation_error = 1e-3;
   /// How often callbacks may add, remove or move bodies within zeno.interval of simulated time; 64 times the number of

@@ -284,4 +284,22 @@ TEST_CASE("rings that are linked, and meshes of many triangles: what a contact c
   }
 }
 
+TEST_CASE("meshes that have passed each other are followed if they come back, and only then", "[turning]") {
+  const auto cube = [](const Vector3d& place, const Vector3d& velocity, double fall) {
+    auto m = motion_of<2>(place, velocity, Vector3d::Zero(), 0);
+    m.path.coefficients[2] = Vector3d(0, 0, -fall);
+    return Solid<2>{MeshShape{samples::cuboid(Vector3d::Constant(0.5)), 1}, m};
+  };
+  // The balls around the two overlap at first, then one flies up, and falls down on the other at 1 = 1.2 + 10 t - 5
+  // t^2.
+  const auto below = cube({0, 0, 0}, {0, 0, 0}, 0);
+  const double back = (10 + std::sqrt(104.0)) / 10;
+  for (const ContactMode mode : {ContactMode::transparent, ContactMode::resolved}) {
+    CHECK(std::abs(meet<2>(below, cube({0.25, 0.5, 1.2}, {0, 0, 10}, 5), 0, 1e6, mode) - back) < 1e-14);
+    CHECK(meet<2>(below, cube({0.25, 0.5, 1.2}, {0, 0, 10}, 0), 0, 1e300, mode) == never);
+    CHECK(meet<2>(below, cube({0.25, 0.5, 1.2}, {3, 0, 10}, 5), 0, 1e6, mode) == never);
+    CHECK(std::abs(meet<2>(below, cube({0.25, 0.5, -4}, {0, 0, 1}, 0), 0, 1e300, mode) - 3) < 1e-14);
+  }
+}
+
 }  // namespace test_turning_mesh
