@@ -113,8 +113,8 @@ void RestingContacts<Motion>::go_on() {
 
 template <class Motion>
 const RestingProgress& RestingContacts<Motion>::kept(BodySlot id) const {
-  static const Progress none;
-  return id < kept_.size() ? kept_[id] : none;
+  static const Progress nothing;
+  return id < kept_.size() ? kept_[id] : nothing;
 }
 
 template <class Motion>
