@@ -35,6 +35,18 @@ struct Manner {
   std::size_t polls = 1;  ///< calls of advance_to(); before the last the world is saved
 };
 
+/// In so many domains at most.
+inline Manner random_manner(Random& random, std::size_t most_domains) {
+  Manner manner;
+  manner.parallel.threads = 1 + random.below(3);
+  manner.parallel.domains = 2 + random.below(most_domains - 1);
+  manner.parallel.halo = random.between(0.3, 4);
+  if (random.one_in(3)) manner.parallel.longest_window = random.between(0.01, 0.3);
+  manner.processes = random.one_in(3) ? 2 + random.below(3) : 1;
+  manner.polls = 1 + random.below(4);
+  return manner;
+}
+
 /// What the runs of a test did in all, so that it is seen that there was something to go wrong.
 struct Seen {
   std::uint64_t events = 0, windows = 0, failed = 0, whole = 0, corrected = 0, copies = 0, divided = 0;

@@ -70,16 +70,8 @@ class TableMaker {
             "seed " + std::to_string(seed_) + ", " + std::to_string(bodies.size()) + " bodies"};
   }
 
-  Manner manner(std::size_t most_domains) {
-    Manner manner;
-    manner.parallel.threads = 1 + random_.below(2);
-    manner.parallel.domains = 2 + random_.below(most_domains - 1);
-    manner.parallel.halo = random_.between(0.3, 4);
-    if (random_.one_in(2)) manner.parallel.longest_window = random_.between(0.01, 0.3);
-    manner.processes = random_.one_in(3) ? 2 + random_.below(3) : 1;
-    manner.polls = 1 + random_.below(4);
-    return manner;
-  }
+  /// How it may be run, in so many domains at most.
+  Manner manner(std::size_t most_domains) { return random_manner(random_, most_domains); }
 
  private:
   double number(double low, double high) {
