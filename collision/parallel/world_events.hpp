@@ -19,7 +19,7 @@ namespace kds::collision {
 
 /// An event as a domain records it. Bodies by their ids in the scene.
 struct DomainEvent {
-  enum class Kind : std::uint8_t {
+  enum class Kind : std::uint8_t {  ///< as WorldListener tells them
     overlap,
     wall,
     contact,

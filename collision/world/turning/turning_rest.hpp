@@ -100,7 +100,7 @@ class TurningRest {
   bool empty() const { return resting_ == 0; }
   /// Whether nothing is remembered that decides what comes to rest later.
   bool remembers_nothing() const;
-  // As RestingContacts: worlds are divided only where there is nothing of this part.
+  /// As RestingContacts: worlds are divided only where there is nothing of this part.
   struct Progress {
     template <class Archive>
     void archive(Archive&) {}
