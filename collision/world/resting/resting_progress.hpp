@@ -16,7 +16,7 @@ namespace kds::collision {
 /// island is solved for by itself (resting_islands.cpp).
 class RestingProgress {
  public:
-  struct State {  ///< of a body of which something rests
+  struct State {                                     ///< of a body of which something rests
     std::vector<detail::RestingContact> contacts{};  ///< bodies by their numbers; in the order in which it lists them
     std::vector<double> releases{};                  ///< s, when each of them ends; `never` if that is not known
     double span_ends = -never;                       ///< s, of the cluster that the body is by itself
