@@ -1,6 +1,7 @@
 // Periodic worlds saved, and loaded again.
 #include "collision/periodic/periodic_world.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/queue_room.hpp"
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
