@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <functional>
 #include <sstream>
 #include <stdexcept>
@@ -182,6 +183,24 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
   const std::size_t others = 1 + (manner.processes + right.events.size()) % 4;
   require_goes_on(scene, manner.parallel, others, state, later, world,
                   what + ", gone on from by " + std::to_string(others));
+}
+
+/// Scenes that a maker makes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand, in
+/// place of these: the environment variable has "FIRST LAST".
+template <class Maker>
+void compare_seeds(const char* variable, std::uint64_t first, std::uint64_t count, std::size_t most_domains,
+                   Seen& seen) {
+  if (const char* seeds = std::getenv(variable)) {
+    std::istringstream text(seeds);
+    std::uint64_t last = 0;
+    text >> first >> last;
+    count = last - first + 1;
+  }
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Maker maker(seed);
+    const auto scene = maker.scene();
+    compare_runs(scene, maker.manner(most_domains), seen);
+  }
 }
 
 }  // namespace kds::collision::tests

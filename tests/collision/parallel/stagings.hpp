@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -197,17 +195,7 @@ class StageMaker {
 /// KDS_DOMAIN_SEEDS="FIRST LAST".
 template <class Motion>
 void compare_stagings(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  if (const char* seeds = std::getenv("KDS_DOMAIN_SEEDS")) {
-    std::istringstream text(seeds);
-    std::uint64_t last = 0;
-    text >> first >> last;
-    count = last - first + 1;
-  }
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    StageMaker<Motion> maker(seed);
-    const auto scene = maker.scene();
-    compare_runs(scene, maker.manner(most_domains), seen);
-  }
+  compare_seeds<StageMaker<Motion>>("KDS_DOMAIN_SEEDS", first, count, most_domains, seen);
 }
 
 }  // namespace kds::collision::tests

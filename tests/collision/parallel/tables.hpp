@@ -9,8 +9,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -153,17 +151,7 @@ class TableMaker {
 /// KDS_TABLE_SEEDS="FIRST LAST".
 template <int Degree>
 void compare_tables(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  if (const char* seeds = std::getenv("KDS_TABLE_SEEDS")) {
-    std::istringstream text(seeds);
-    std::uint64_t last = 0;
-    text >> first >> last;
-    count = last - first + 1;
-  }
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    TableMaker<Degree> maker(seed);
-    const auto scene = maker.scene();
-    compare_runs(scene, maker.manner(most_domains), seen);
-  }
+  compare_seeds<TableMaker<Degree>>("KDS_TABLE_SEEDS", first, count, most_domains, seen);
 }
 
 }  // namespace kds::collision::tests
