@@ -207,7 +207,7 @@ void Bounces<Motion>::begin_rest(BodySlot a, BodySlot b, const Contact& contact)
   const Vector3d point = contact.point - bodies_.path(a).position(contact.time);
   resting_.add({.a = a, .b = b, .normal = contact.normal, .point = point});
   for (const BodySlot id : {a, b}) {
-    bodies_.fixed(id) ? resting_.disturb_carried(id) : resting_.disturb(id);
+    if (!bodies_.fixed(id)) resting_.disturb(id);
   }
   resting_.solve();
 }

@@ -62,8 +62,6 @@ template <class Motion>
 void RestingContacts<Motion>::gather(BodySlot id, double ends) {
   if (bodies_.fixed(id)) return;
   const Island island = find_island(id);
-  const auto at_wall = [this](Slot slot) { return contacts_[slot].b == no_body; };
-  if (bodies_.numbered() && !std::all_of(island.contacts.begin(), island.contacts.end(), at_wall)) throw RestsInPart();
   bool woken = false;
   for (std::size_t i = 0; i < island.free; ++i) {
     Member& member = of_[island.bodies[i]];
@@ -71,7 +69,6 @@ void RestingContacts<Motion>::gather(BodySlot id, double ends) {
     if (clustered(island.bodies[i]) && member.span_ends != never) continue;
     member.span_ends = ends;
     member.calm_since = never;
-    note_carried(island.bodies[i]);
   }
   for (const Slot slot : island.contacts) {
     Contact& contact = contacts_[slot];

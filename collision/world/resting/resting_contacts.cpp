@@ -66,9 +66,7 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const 
 template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
   const bool leans = contact.b != no_body && !(bodies_.fixed(contact.a) || bodies_.fixed(contact.b));
-  if (bodies_.numbered() && (leans || (contact.b != no_body && (clustered(contact.a) || clustered(contact.b))))) {
-    throw RestsInPart();
-  }
+  if (bodies_.numbered() && leans) throw RestsInPart();
   // The shorter list is searched: a floor has many contacts.
   const bool from_b = contact.b != no_body && member(contact.b).contacts.size() < member(contact.a).contacts.size();
   for (const Slot slot : member(from_b ? contact.b : contact.a).contacts) {
@@ -117,7 +115,6 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::give_slot(const 
   member(contact.a).contacts.push_back(slot);
   if (contact.b == no_body) return slot;
   member(contact.b).contacts.push_back(slot);
-  note_carried(contact.a), note_carried(contact.b);
   return slot;
 }
 
@@ -132,7 +129,7 @@ void RestingContacts<Motion>::drop(Slot slot) {
     if (id == no_body) continue;
     auto& list = of_[id].contacts;
     list.erase(std::find(list.begin(), list.end(), slot));
-    bodies_.fixed(id) && contact.b != no_body ? disturb_carried(id) : disturb(id);
+    if (contact.b == no_body || !bodies_.fixed(id)) disturb(id);
   }
   if (contact.b != no_body) listener_->changed(contact.a, contact.b);
 }
@@ -364,22 +361,20 @@ template <class Motion>
 void RestingContacts<Motion>::become(const Image& image) {
   contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
   islands_ = 0;
-  kept_.clear(), carried_.clear();
-  of_.clear();
+  kept_.clear(), of_.clear();
   for (BodySlot id = 0; id < image.of.size(); ++id) {
     member(id).contacts = image.of[id];
     member(id).span_ends = image.span_ends[id];
     member(id).calm_since = image.calm_since[id];
     member(id).met = image.met[id] != 0;
   }
-  for (const BodySlot id : disturbed_) member(id).disturbed = member(id).moved = true;
+  for (const BodySlot id : disturbed_) member(id).disturbed = true;
   for (BodySlot id = 0; id < of_.size(); ++id) {
     Member& member = of_[id];
     const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };
     member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)
                                        : member.disturbed || !member.contacts.empty();
   }
-  for (BodySlot id = 0; id < of_.size(); ++id) note_carried(id);
   releases_.resize(0);
   releases_.resize(contacts_.size());
   for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);

@@ -129,7 +129,6 @@ class RestingContacts {
     drop_all(id);
     if (id < spans_.slots()) spans_.clear(id);
     if (id < of_.size()) {
-      if (of_[id].listed) std::erase(carried_, id);
       of_[id] = {};
     }
     if (id < kept_.size()) kept_[id] = {};
@@ -147,14 +146,11 @@ class RestingContacts {
   /// approaches.
   Eigen::Vector3d drive(BodySlot id, const Eigen::Vector3d& normal, double velocity);
 
-  /// The motion of a body has changed: solve() is to look at those that rest on it or that it rests on.
+  /// The motion of a body or its contacts have changed: solve() is to look at it, and at those that rest on it or that
+  /// it rests on. A fixed body moves on as before when it begins or ceases to carry another, so that does not concern
+  /// what else it carries.
   void disturb(BodySlot id) {
-    if (!contacts_.empty() || clustered(id)) note(id, true);
-  }
-  /// A fixed body has begun or ceased to carry another: solve() is to look at what else it carries, where that may
-  /// change anything.
-  void disturb_carried(BodySlot id) {
-    if (!contacts_.empty()) note(id, false);
+    if (!contacts_.empty() || clustered(id)) note(id);
   }
   bool solved() const { return disturbed_.empty(); }
   /// Gives all disturbed bodies the motions that their contacts allow.
@@ -196,8 +192,7 @@ class RestingContacts {
 
   // resting_transfer.cpp: bodies that several worlds have, each a part of them (transfer.cpp).
   using Progress = RestingProgress;
-  /// Whether each body leans on walls alone, or lies steady on walls and fixed bodies: then the progress of each is all
-  /// there is.
+  /// Whether each body leans on walls and fixed bodies alone: then the progress of each is all there is.
   bool divisible() const;
   /// Of a body, if it leans on no others but fixed ones; of a fixed one, what rests of it at walls.
   Progress progress(BodySlot id) const;
@@ -247,10 +242,8 @@ class RestingContacts {
     std::uint64_t island = 0;    ///< the last island in which it was found
     std::uint32_t place = 0;     ///< in that
     bool disturbed = false;
-    bool moved = false;         ///< of a fixed one that is disturbed: its motion has changed
     double span_ends = -never;  ///< s, of the cluster's span; `never`: asleep; -never: in no cluster
     double calm_since = never;  ///< s
-    bool listed = false;        ///< in carried_
     bool met = false;           ///< it has met another that is not fixed, and may come to rest
     bool carried = false;       ///< degree 3 and above: its motion is one that contacts have changed
   };
@@ -271,18 +264,13 @@ class RestingContacts {
   Slot give_slot(const Contact& contact);
   bool began_before(Slot x, Slot y) const;
   Slot first_release() const;
-  bool is_carried(BodySlot id) const;
-  bool carries_unsteady(BodySlot id);
-  bool steady(BodySlot id) const;
-  void note_carried(BodySlot id);
-  bool is_complete(BodySlot id) const;
-  void note(BodySlot id, bool moved);
+  void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);
 
   // resting_islands.cpp
   void solve_all();
-  void solve_fixed(BodySlot id, bool moved);
+  void solve_fixed(BodySlot id);
   bool solve_island(BodySlot id, bool& dissolved);
   Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
@@ -331,7 +319,6 @@ class RestingContacts {
   std::vector<Slot> free_;
   std::vector<Member> of_;  ///< by body, up to the last that has rested
   std::vector<BodySlot> disturbed_;
-  std::vector<BodySlot> carried_;            ///< bodies that rest on fixed ones, but for some that are steady
   DaryQueue<detail::RestingRank> releases_;  ///< when contacts end; slots are contacts
   DaryQueue<BodyRank> spans_;                ///< when spans end; slots are bodies, the first of each cluster
   std::uint64_t islands_ = 0;

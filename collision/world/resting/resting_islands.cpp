@@ -13,15 +13,14 @@ namespace kds::collision {
 using Eigen::Vector3d;
 
 template <class Motion>
-void RestingContacts<Motion>::note(BodySlot id, bool moved) {
+void RestingContacts<Motion>::note(BodySlot id) {
   if (!bodies_.entered(id)) return;
   bool as_given = true;
   if constexpr (Motion::degree == 2)
     as_given = bodies_.fixed(id) || bodies_.motion(id).coefficients[2] == bodies_.free_acceleration(id);
   if constexpr (Motion::degree >= 3) as_given = id >= of_.size() || !of_[id].carried;
   if (!carries(id) && as_given) return;
-  member(id).moved = of_[id].moved || moved;
-  if (std::exchange(of_[id].disturbed, true)) return;
+  if (std::exchange(member(id).disturbed, true)) return;
   disturbed_.push_back(id);
 }
 
@@ -32,25 +31,19 @@ void RestingContacts<Motion>::solve_all() {
     disturbed_.pop_back();
     if (!std::exchange(member(id).disturbed, false) || !bodies_.entered(id)) continue;
     if (bodies_.fixed(id)) {
-      solve_fixed(id, std::exchange(of_[id].moved, false));
+      solve_fixed(id);
     } else {
       for (bool dissolved = false; !solve_island(id, dissolved);) {
       }
     }
-    note_carried(id);
-    if (!bodies_.numbered()) continue;
-    solved_.push_back(id);
-    if (!of_[id].disturbed && !is_complete(id)) throw RestsInPart();
+    if (bodies_.numbered()) solved_.push_back(id);
   }
 }
 
 /// A fixed body rests at walls only: they take away the speed and the acceleration that lead out of the domain. What it
-/// carries is solved for anew, but for bodies that are steady if it has only begun or ceased to carry another: there
-/// may be very many on a floor.
+/// carries is solved for anew.
 template <class Motion>
-void RestingContacts<Motion>::solve_fixed(BodySlot id, bool moved) {
-  const bool disturbs = moved || carries_unsteady(id);
-  if (Motion::degree <= 2 && !disturbs) return;
+void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
   const std::vector<Slot> contacts = of_[id].contacts;  // some may be dropped
@@ -63,8 +56,7 @@ void RestingContacts<Motion>::solve_fixed(BodySlot id, bool moved) {
   for (const Slot slot : contacts) {
     Contact& contact = contacts_[slot];
     if (contact.wall < 0) {
-      const BodySlot carried = contact.a == id ? contact.b : contact.a;
-      if (disturbs && (moved || !steady(carried))) disturb(carried);
+      disturb(contact.a == id ? contact.b : contact.a);
       continue;
     }
     const Eigen::Index axis = contact.wall / 2;

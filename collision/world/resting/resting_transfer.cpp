@@ -13,11 +13,15 @@ namespace kds::collision {
 template <class Motion>
 bool RestingContacts<Motion>::divisible() const {
   if (!solved()) return false;
+  const auto leans = [this](const Contact& contact) {
+    return contact.alive && contact.b != no_body && !bodies_.fixed(contact.a) && !bodies_.fixed(contact.b);
+  };
+  if (std::any_of(contacts_.begin(), contacts_.end(), leans)) return false;
   for (BodySlot id = 0; id < of_.size(); ++id) {
     // A cluster of several bodies has one span; what is left of it when their contacts have ended has spans of its own.
     const double ends = of_[id].span_ends;
     const bool waits_for_others = ends != -never && ends != never && !(id < spans_.slots() && spans_.contains(id));
-    if (waits_for_others || !is_complete(id)) return false;
+    if (waits_for_others) return false;
   }
   return true;
 }
@@ -92,7 +96,7 @@ void RestingContacts<Motion>::set_aside() {
   for (BodySlot id = 0; id < of_.size(); ++id) {
     if (bodies_.alive(id)) keep(id, progress(id));
   }
-  contacts_.clear(), free_.clear(), of_.clear(), disturbed_.clear(), carried_.clear();
+  contacts_.clear(), free_.clear(), of_.clear(), disturbed_.clear();
   releases_.resize(0);
   spans_.resize(0);
 }

@@ -1,4 +1,4 @@
-// Random scenes of what rests on fixed bodies and walls: tables, steps, lifts, tilted ones.
+// Random scenes of what rests on fixed bodies and walls: tables, steps, lifts, slopes, domes.
 #pragma once
 
 #include "tests/collision/parallel/compared_runs.hpp"
@@ -99,11 +99,11 @@ class TableMaker {
     return body;
   }
 
-  /// Boxes whose tops are at heights of 0 and below, side by side, or one; or cubes that are meshes; or one that is
-  /// tilted.
+  /// Boxes whose tops are at heights of 0 and below, side by side, or one; or cubes that are meshes; or slopes; or
+  /// domes, down which bodies slide in clusters.
   void add_ground(std::vector<BodyDescription<Degree>>& bodies, double side) {
     const int steps = random_.integer(1, 4);
-    const bool mesh = random_.one_in(5), tilted = random_.one_in(6);
+    const bool mesh = random_.one_in(5), tilted = random_.one_in(4), dome = random_.one_in(8);
     const double width = (side + 4) / steps;
     for (int step = 0; step < steps; ++step) {
       const Vector centre(-2 + width * (step + 0.5), 0.5 * side, -1 - (coarse_ ? 0.5 : 0.3) * step);
@@ -112,7 +112,11 @@ class TableMaker {
         ground.shape = MeshShape{cube(), std::max(width, side)};
         ground.motion = {motion<Degree>(centre - Vector(0, 0, std::max(width, side) - 1))};
       }
-      if (tilted) ground.orientation = unit_quaternion(1, 0.05, random_.between(-0.1, 0.1), 0);
+      if (tilted) ground.orientation = unit_quaternion(1, 0.05, random_.between(-0.2, 0.2), 0);
+      if (dome) {
+        const double radius = width + side;
+        ground = fixed_body<Degree>(Sphere{radius}, motion<Degree>(centre + Vector(0, 0, 1 - radius)));
+      }
       ground.restitution = random_.one_in(3) ? 1 : 0.5;
       bodies.push_back(ground);
     }

@@ -19,12 +19,12 @@ using Path = certificates::PointMotion<2>;
 
 const Vector3d gravity(0, 0, -5);
 
-/// Balls that lie at this height, on places of a lattice, and move sideways.
-void add_balls(World<2>& world, int side, double height) {
+/// Balls that lie at this height, on places of a lattice, and move sideways; or somewhat above it.
+void add_balls(World<2>& world, int side, double height, double above = 0) {
   Random random(3);
   for (int i = 0; i < side * side; ++i) {
     const double u = random.between(-3, 3), v = random.between(-3, 3);
-    auto ball = tests::ball<2>(0.5, {2.0 * (i % side), 2.0 * (i / side), height + 0.5}, {u, v, 0}, gravity);
+    auto ball = tests::ball<2>(0.5, {2.0 * (i % side), 2.0 * (i / side), height + above + 0.5}, {u, v, 0}, gravity);
     ball.restitution = 0.75;
     world.add_body(ball);
   }
@@ -81,6 +81,32 @@ TEST_CASE("Domains: balls that roll about on a floor are divided, and none of it
   options.walls = Walls{Vector3d(-2, -2, 0), Vector3d(16, 16, 9), 0.5};
   seen = run_in_all_manners({options, [](World<2>& world) { add_balls(world, 8, 0); }, 3, "on a wall"});
   CHECK(seen.tables == 6);
+}
+
+TEST_CASE("Domains: balls that slide down a slope or a dome are divided, and none of it is run as one world",
+          "[parallel]") {
+  WorldOptions options = tests::with_response(Response::elastic);
+  const auto on_a_slope = [](World<2>& world) {
+    auto slope = tests::fixed_body<2>(Box{{60, 60, 1}}, tests::motion<2>({7, 7, -6}));
+    slope.orientation = tests::unit_quaternion(1, 0.05, 0.1, 0);
+    slope.restitution = 0;
+    world.add_body(slope);
+    add_balls(world, 8, 0, 1);
+  };
+  Seen seen = run_in_all_manners({options, on_a_slope, 3, "on a slope"});
+  INFO(seen.text());
+  CHECK(seen.tables == 6);
+  CHECK(seen.rests >= 6 * 64);
+
+  const auto on_a_dome = [](World<2>& world) {
+    auto dome = tests::fixed_body<2>(Sphere{100}, tests::motion<2>({7, 7, -101}));
+    dome.restitution = 0;
+    world.add_body(dome);
+    add_balls(world, 8, 0, 1);
+  };
+  seen = run_in_all_manners({options, on_a_dome, 3, "on a dome"});
+  CHECK(seen.tables == 6);
+  CHECK(seen.rests >= 6 * 64);
 }
 
 TEST_CASE("Domains: a lift that bounces off walls moves all that it carries at one time", "[parallel]") {
