@@ -29,9 +29,6 @@ void BoxGrid::put(Id id, const StaticBox& box, Changes& changes, double rounding
   if (before != absent && level < before && level_for(1.125 * extent) == before) level = before;
   const Item to{BoxBounds(box), kept_rounding(rounding), 0, no_slant, level, false, items_[id].kind};
   if (level == before && !slant && !slanted(id)) return move(id, to, changes, alone);
-  const std::size_t levels = levels_.size();
-  use_level(level);
-  if (levels_.size() > levels) restart_guests();
   if (before != absent) return put_anew(id, to, slant, changes, alone);
   ++size_;
   set_item(id, to, slant);
@@ -107,6 +104,7 @@ void BoxGrid::enter(Id id, Changes& changes) {
   if (guests_.size() + levels_.size() > guests_.room()) restart_guests();
   items_[id].entered = true;
   const Item item = items_[id];
+  use_level(item.level);
   CellTable::Found found;
   begin_search(id);
   for (Level& level : levels_) {
@@ -115,14 +113,14 @@ void BoxGrid::enter(Id id, Changes& changes) {
     const bool native = level.exponent == item.level;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_finer(level, item, kind, found);
+      if (native) search_smaller(level, kind, item, found);
     });
     if (native) {
-      level.idle = 0;
+      count_scan(level);
       add_native(level, ends, id, item.kind);
     } else {
-      count_guest(level);
-      add_guest(level, ends, id, item.kind);
+      count_change(level, 0);
+      if (level.hosts) add_guest(level, ends, id, item.kind);
     }
   }
   slants_.empty() ? take_overlapping<false>(id, item, found, changes.began)
@@ -190,6 +188,7 @@ void BoxGrid::enter_all(std::span<const Id> ids) {
       levels_[i].natives += censuses[i][kind].count;
     }
   }
+  choose_hosts();
   restart_guests();
 }
 
@@ -203,16 +202,17 @@ void BoxGrid::leave(Id id, Changes& changes, bool alone) {
     const Ends ends(item.bounds, level.scale);
     const bool native = level.exponent == item.level;
     if (native) {
-      --level.natives;
+      if (--level.natives == 0) unsettled_ = true;
       remove(natives_, level.family_of(item.kind), level.of[item.kind].natives, ends, id);
-    } else {
+    } else if (level.hosts) {
       remove(guests_, level.family_of(item.kind), level.of[item.kind].guests, ends, id);
     }
     if (alone) continue;
     for_each_kind(meetings_[item.kind], [&](Kind kind) {
       search_natives(level, kind, ends, found);
-      if (native) search_finer(level, item, kind, found);
+      if (native) search_smaller(level, kind, item, found);
     });
+    if (native) count_scan(level);
   }
   if (alone) return;
   begin_search(id);
@@ -245,11 +245,12 @@ void BoxGrid::move(Id id, const Item& to, Changes& changes, bool alone) {
     const Ends before(from.bounds, level->scale);
     const Ends after(to.bounds, level->scale);
     const Ends searched = sought(before, after);
-    level->idle = 0;
+    const BoxBounds bounds = alone ? to.bounds : from.bounds.joined(to.bounds);
     for_each_kind(met, [&](Kind kind) {
       search_natives(*level, kind, searched, found);
-      search_guests(*level, kind, searched, found);
+      if (level != levels_.begin()) search_smaller(*level, kind, bounds, found);
     });
+    count_scan(*level);
     replace(natives_, level->family_of(own), level->of[own].natives, before, after, id);
   }
   while (++level != levels_.end()) {
@@ -257,8 +258,9 @@ void BoxGrid::move(Id id, const Item& to, Changes& changes, bool alone) {
     const Ends after(to.bounds, level->scale);
     const Ends searched = sought(before, after);
     for_each_kind(met, [&](Kind kind) { search_natives(*level, kind, searched, found); });
-    count_guest(*level);
-    replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
+    const std::size_t walked = guests_.walked();
+    if (level->hosts) replace(guests_, level->family_of(own), level->of[own].guests, before, after, id);
+    count_change(*level, guests_.walked() - walked);
   }
   if (alone) {
     slants_.empty() ? take_overlapping<false>(id, to, found, changes.began)

@@ -28,11 +28,15 @@ namespace kds::collision {
 ///
 /// A level of the grid has cubic cells, of sides that double from level to level; the smallest contain a few boxes on
 /// average, since looking into empty cells costs more than comparing some boxes in vain. A box is a *native* of the
-/// level whose cells are just larger, and a *guest* of all coarser levels in use; in each it is in one cell, that of
-/// its lower corner, so to move it rarely changes more than one entry. A search looks into the cells that may contain
-/// the corner of an overlapping box. So two boxes of any sizes meet in cells of the larger one's level; space is
-/// unbounded, and a small box is not compared with other small ones through the cells of a large one. Cells are found
-/// by hashing; different cells with the same key only cost time, since every box found in a cell is compared.
+/// level whose cells are just larger, and may be a *guest* of coarser levels; in each it is in one cell, that of its
+/// lower corner, so to move it rarely changes more than one entry. A search looks into the cells that may contain the
+/// corner of an overlapping box. So two boxes of any sizes meet in cells of the larger one's level; space is unbounded,
+/// and a small box is not compared with other small ones through the cells of a large one. Cells are found by hashing;
+/// different cells with the same key only cost time, since every box found in a cell is compared.
+///
+/// Guests are sought only when a native is put or moves. A level whose natives do that rarely, that of a floor on which
+/// many bodies move, has none: then a native is compared with all smaller boxes. Each level takes in guests, and ceases
+/// to, once that would have saved as much work as it costs.
 ///
 /// A cell stores the ends of its boxes on a lattice of a 32nd of its side. Rounding to it is monotone, so boxes that
 /// overlap do so on the lattice; most that do not are excluded without reading the boxes themselves.
@@ -47,8 +51,9 @@ namespace kds::collision {
 /// Boxes may be of several *kinds*, each with cells of its own in every level, so that a box is compared only with
 /// those of the kinds that its own meets.
 ///
-/// Cost: O(1) a change at bounded density, for each level in use from the box's own and each kind that is met; a first
-/// native of a level makes all smaller boxes its guests, O(n). Memory O(n).
+/// Cost: O(1) a change at bounded density, for each level in use from the box's own and each kind that is met; of a box
+/// whose level has no guests, O(n), if few boxes are so large or are changed so rarely that this costs less. Memory
+/// O(n).
 class BoxGrid {
  public:
   using Id = std::uint32_t;
@@ -158,7 +163,7 @@ class BoxGrid {
   /// For inserting many into an empty grid in an order that suits the cache: first all are announced, then each one
   /// enters. No other function may be called in between. Precondition: id below the end reserved; none has entered.
   void announce(Id id, const StaticBox& box, double rounding = 0) {
-    if (size_ == 0) levels_.clear();  // those of boxes that have been removed
+    if (size_ == 0) levels_.clear(), unsettled_ = false;  // those of boxes that have been removed
     Item& item = items_[id];
     item.bounds = BoxBounds(box);
     item.rounding = kept_rounding(rounding);
@@ -221,7 +226,10 @@ class BoxGrid {
     double scale;             ///< units of the lattice per unit of length
     std::uint64_t family;     ///< of its cells
     std::size_t natives = 0;  ///< of all kinds
-    std::size_t idle = 0;     ///< registrations of guests since the last native was removed
+    bool hosts = false;       ///< whether smaller boxes are its guests
+    /// The work that there has been because it hosts, or does not, less that which there would have been otherwise; at
+    /// least 0. The unit is that of changing the cell of a box.
+    std::int64_t wasted = 0;
     struct Populations {
       Population natives{}, guests{};
     };
@@ -256,7 +264,9 @@ class BoxGrid {
                       Id id);
   void add_native(Level& level, const Ends& ends, Id id, Kind kind);
   void add_guest(Level& level, const Ends& ends, Id id, Kind kind);
-  void count_guest(Level& level);
+  void count_scan(Level& level);
+  void count_change(Level& level, std::size_t walked);
+  void waste(Level& level, std::int64_t work);
   void begin_search(Id id);
   bool report_once(Id id);
   bool meets(Kind kind, Id id) const { return meetings_[kind] >> items_[id].kind & 1; }
@@ -286,7 +296,8 @@ class BoxGrid {
   void leave(Id id, Changes& changes, bool alone);
   void move(Id id, const Item& to, Changes& changes, bool alone);
   void put_anew(Id id, const Item& to, const BoxSlant* slant, Changes& changes, bool alone);
-  void drop_idle_level();
+  void settle();
+  void choose_hosts();
   void restart_guests();
   void tidy();
   void grow();
@@ -298,14 +309,12 @@ class BoxGrid {
     const Population& natives = level.of[kind].natives;
     if (natives.count != 0) search(natives_, level.family_of(kind), natives, box, found);
   }
-  void search_guests(const Level& level, Kind kind, const Ends& box, CellTable::Found& found) {
-    const Population& guests = level.of[kind].guests;
-    if (guests.count != 0) search(guests_, level.family_of(kind), guests, box, found);
-  }
+  std::size_t count_smaller(const Level& level, Kind kind) const;
+  void search_smaller(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found);
   void search(const CellTable& table, std::uint64_t family, const Population& population, const Ends& box,
               CellTable::Found& found);
   void count_crowd(std::size_t chained, std::size_t cells);
-  void search_finer(const Level& level, const Item& item, Kind kind, CellTable::Found& found);
+  void search_smaller(const Level& level, Kind kind, const Item& item, CellTable::Found& found);
   void follow(const Way& way, Kind kind, CellTable::Found& found);
 
   CellTuning tuning_;
@@ -322,7 +331,7 @@ class BoxGrid {
   double room_per_extent_;     ///< roominess in such cells
   Exponent finest_ = least;    ///< no box is native of a finer level
   std::int64_t crowding_ = 0;  ///< buckets on chains that searches have visited, minus an allowance for each cell
-  bool idle_ = false;          ///< some level has had too much idle work
+  bool unsettled_ = false;     ///< some level has wasted much, or has no natives
   Meetings meetings_{1};
 };
 

@@ -35,7 +35,7 @@ std::vector<BoxGrid::Level>::iterator BoxGrid::find_level(Exponent exponent) {
                           [](const Level& level, Exponent e) { return level.exponent < e; });
 }
 
-/// Finds or makes the level; a new one has no guests yet.
+/// Finds or makes the level; a new one has no guests.
 BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
   const auto place = find_level(exponent);
   if (place != levels_.end() && place->exponent == exponent) return *place;
@@ -45,15 +45,33 @@ BoxGrid::Level& BoxGrid::use_level(Exponent exponent) {
 
 /// Rebuilds the levels when the wasted work exceeds the cost of rebuilding.
 void BoxGrid::tidy() {
-  if (idle_) drop_idle_level();
+  if (unsettled_) settle();
   if (crowding_ > tuning_.patience * static_cast<std::int64_t>(size_)) refine();
 }
 
-/// Levels are added and removed with the sizes of boxes; one without natives is given up.
-void BoxGrid::drop_idle_level() {
-  idle_ = false;
-  std::erase_if(levels_, [&](const Level& level) { return level.natives == 0 && level.idle > size_; });
-  restart_guests();
+/// Levels are added and removed with the sizes of boxes; one without natives is given up. Levels take in guests, and
+/// cease to.
+void BoxGrid::settle() {
+  unsettled_ = false;
+  bool changed = false;
+  for (Level& level : levels_) {
+    if (level.wasted <= static_cast<std::int64_t>(size_)) continue;
+    level.hosts = !level.hosts;
+    level.wasted = 0;
+    changed = true;
+  }
+  std::erase_if(levels_, [](const Level& level) { return level.natives == 0 && !level.hosts; });
+  if (changed) restart_guests();
+}
+
+/// For boxes that are new: as if all were going to change equally often.
+void BoxGrid::choose_hosts() {
+  std::size_t finer = 0;
+  for (Level& level : levels_) {
+    level.hosts = level.natives * size_ > tuning_.scanned_per_change * finer;
+    level.wasted = 0;
+    finer += level.natives;
+  }
 }
 
 /// Puts all boxes into new cells of the levels that fit them now, with room for this many.
@@ -67,6 +85,7 @@ void BoxGrid::restart(std::size_t room) {
     Level& level = use_level(item.level);
     if (item.entered) add_native(level, Ends(item.bounds, level.scale), id, item.kind);
   }
+  choose_hosts();
   restart_guests();
 }
 
@@ -108,7 +127,7 @@ void BoxGrid::restart_guests() {
   std::size_t finer = 0;
   for (Level& level : levels_) {
     for (Level::Populations& populations : level.of) populations.guests = {};
-    guests += finer;
+    if (level.hosts) guests += finer;
     finer += level.natives;
   }
   guests_.restart(guests + guests / 2 + levels_.size());
@@ -116,14 +135,37 @@ void BoxGrid::restart_guests() {
   for (Id id = 0; id < items_.size(); ++id) {
     if (!items_[id].entered) continue;
     for (Level& level : levels_) {
-      if (level.exponent <= items_[id].level) continue;
+      if (!level.hosts || level.exponent <= items_[id].level) continue;
       add_guest(level, Ends(items_[id].bounds, level.scale), id, items_[id].kind);
     }
   }
 }
 
-void BoxGrid::count_guest(Level& level) {
-  if (level.natives == 0 && ++level.idle > size_) idle_ = true;
+/// Counts work that a level has caused because it hosts, or does not. What it saves is counted below zero.
+void BoxGrid::waste(Level& level, std::int64_t work) {
+  level.wasted = std::max<std::int64_t>(level.wasted + work, 0);
+  if (level.wasted > static_cast<std::int64_t>(size_)) unsettled_ = true;
+}
+
+/// A native is put or moves: either its guests are there, or all smaller boxes are compared.
+void BoxGrid::count_scan(Level& level) {
+  const auto work = static_cast<std::int64_t>(size_ / tuning_.scanned_per_change + 1);
+  waste(level, level.hosts ? -work : work);
+}
+
+/// A smaller box changes its cell, after so many buckets that are walked, or would if it were a guest.
+void BoxGrid::count_change(Level& level, std::size_t walked) {
+  const auto work = static_cast<std::int64_t>(1 + walked / 4);
+  waste(level, level.hosts ? work : -work);
+}
+
+std::size_t BoxGrid::count_smaller(const Level& level, Kind kind) const {
+  std::size_t count = 0;
+  for (const Level& finer : levels_) {
+    if (finer.exponent >= level.exponent) break;
+    count += finer.of[kind].natives.count;
+  }
+  return count;
 }
 
 void BoxGrid::count_in(Population& population, const Ends& ends) {
@@ -159,6 +201,7 @@ void BoxGrid::remove(CellTable& table, std::uint64_t family, Population& populat
 
 void BoxGrid::replace(CellTable& table, std::uint64_t family, Population& population, const Ends& from, const Ends& to,
                       Id id) {
+  if (from.values == to.values) return;  // as most are of boxes that are guests of far larger cells
   if (from.same_cell(to)) {
     population.span = std::max(population.span, to.span());
     table.replace(to.place(table, family), from.in_cell(), to.in_cell(), id);
@@ -233,11 +276,26 @@ struct BoxGrid::Way {
   std::array<Across, 2> across;
 };
 
-/// Finds the boxes of finer levels. The guests of a large cell are many, and a prism meets few of them; it is followed
-/// through the cells of the natives where that costs less.
-void BoxGrid::search_finer(const Level& level, const Item& item, Kind kind, CellTable::Found& found) {
+/// Finds the boxes of finer levels that overlap these bounds: among the guests, or among all.
+void BoxGrid::search_smaller(const Level& level, Kind kind, const BoxBounds& bounds, CellTable::Found& found) {
   const Population& guests = level.of[kind].guests;
-  if (guests.count == 0) return;
+  if (guests.count != 0) {
+    search(guests_, level.family_of(kind), guests, Ends(bounds, level.scale), found);
+  } else if (!level.hosts && count_smaller(level, kind) != 0) {
+    const BoxOverlaps overlaps(bounds, 0, bounds, 0);
+    for (Id id = 0; id < items_.size(); ++id) {
+      const Item& item = items_[id];
+      if (!item.entered || item.level >= level.exponent || item.kind != kind) continue;
+      if (overlaps.with(item.bounds, 0) != 0) found.add(id);
+    }
+  }
+}
+
+/// The same for a box of the level. The guests of a large cell are many, and a prism meets few of them; it is followed
+/// through the cells of the natives where that costs less.
+void BoxGrid::search_smaller(const Level& level, Kind kind, const Item& item, CellTable::Found& found) {
+  const std::size_t smaller = count_smaller(level, kind);
+  if (smaller == 0) return;
   if (item.slant != no_slant) {
     boost::container::small_vector<Way, 4> ways;
     std::int64_t slabs = 0;
@@ -250,12 +308,12 @@ void BoxGrid::search_finer(const Level& level, const Item& item, Kind kind, Cell
       slabs += ways.back().slabs();
       fits = fits && ways.back().fits();
     }
-    if (fits && slabs * tuning_.guests_per_slab < static_cast<std::int64_t>(guests.count)) {
+    if (fits && slabs * tuning_.guests_per_slab < static_cast<std::int64_t>(smaller)) {
       for (const Way& way : ways) follow(way, kind, found);
       return;
     }
   }
-  search(guests_, level.family_of(kind), guests, Ends(item.bounds, level.scale), found);
+  search_smaller(level, kind, item.bounds, found);
 }
 
 void BoxGrid::follow(const Way& way, Kind kind, CellTable::Found& found) {

@@ -153,6 +153,7 @@ CellTable::Where CellTable::where(std::size_t place, Ends ends, std::uint32_t nu
   }
   while (bucket->next != none) {
     bucket = &chained_[bucket->next];
+    ++walked_;
     for (std::uint64_t may_be = bucket->within(ends); may_be != 0; may_be &= may_be - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(may_be));
       if (bucket->numbers[i] == number && bucket->ends[i] == ends) return {bucket, i};

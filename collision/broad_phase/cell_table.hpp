@@ -43,6 +43,8 @@ class CellTable {
   void restart(std::size_t numbers);
 
   std::size_t size() const { return size_; }
+  /// How many buckets have been walked to numbers that were changed or removed, beyond the first of each cell.
+  std::size_t walked() const { return walked_; }
   /// More numbers than this would be faster to find after a restart.
   std::size_t room() const { return buckets_.size(); }
 
@@ -68,6 +70,10 @@ class CellTable {
 
     void clear() { size_ = 0; }
     std::span<const std::uint32_t> numbers() const { return {numbers_, size_}; }
+    void add(std::uint32_t number) {
+      *room_for(1) = number;
+      ++size_;
+    }
 
    private:
     friend CellTable;
@@ -163,6 +169,7 @@ class CellTable {
   LargeVector<Bucket> chained_;
   std::uint32_t free_ = none;
   std::size_t size_ = 0;
+  std::size_t walked_ = 0;
   int shift_ = 63;
 };
 

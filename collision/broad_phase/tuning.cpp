@@ -31,6 +31,7 @@ void check(const CellTuning& tuning) {
           "in 4 ... 2^20");
   require(tuning.guests_per_slab >= 0 && tuning.guests_per_slab <= 1 << 20, "CellTuning.guests_per_slab",
           "in 0 ... 2^20");
+  require_cost(tuning.scanned_per_change, "CellTuning.scanned_per_change");
   require(tuning.patience > 0 && tuning.patience <= 1 << 20, "CellTuning.patience", "in 1 ... 2^20");
 }
 

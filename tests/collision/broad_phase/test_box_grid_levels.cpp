@@ -138,5 +138,64 @@ TEST_CASE("Boxes of many levels that share the buckets of a small table", "[box_
   CHECK(changed > 10'000);
 }
 
+TEST_CASE("Large boxes that rest among small ones, and then move among small ones that rest", "[box_grid]") {
+  constexpr BoxGrid::Id few = 3, count = 60;
+  constexpr std::size_t never_scanned = std::size_t{1} << 20;
+  std::size_t changed = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const std::size_t scanned_per_change : {std::size_t{1}, CellTuning{}.scanned_per_change, never_scanned}) {
+      Random random(seed);
+      CellTuning tuning;
+      tuning.scanned_per_change = scanned_per_change;
+      BoxGrid grid(tuning);
+      std::vector<StaticBox> boxes(count);
+      std::set<std::pair<BoxGrid::Id, BoxGrid::Id>> overlapping;
+      BoxGrid::Changes changes;
+      std::size_t wrong = 0;
+      const auto take = [&](BoxGrid::Id id) {
+        for (const auto other : changes.ended) wrong += overlapping.erase(std::minmax(id, other)) != 1;
+        for (const auto other : changes.began) wrong += !overlapping.insert(std::minmax(id, other)).second;
+        changed += changes.began.size() + changes.ended.size();
+        changes.clear();
+      };
+      const bool announced = random.one_in(2);
+      for (BoxGrid::Id id = 0; id < count; ++id) {
+        boxes[id] = random_box(random, id < few ? 40 : 1, 30, 0);
+        if (announced) {
+          if (id == 0) grid.reserve(count);
+          grid.announce(id, boxes[id]);
+        } else {
+          grid.put(id, boxes[id], changes);
+          take(id);
+        }
+      }
+      for (BoxGrid::Id id = 0; announced && id < count; ++id) {
+        grid.enter(id, changes);
+        take(id);
+      }
+      for (int step = 0; step < 2000; ++step) {
+        // In turn for so long that levels begin and cease to have guests.
+        const bool large = step / 500 % 2 == 1 && !random.one_in(20);
+        const auto id = static_cast<BoxGrid::Id>(large ? random.below(few) : few + random.below(count - few));
+        if (grid.contains(id) && random.one_in(40)) {
+          grid.remove(id, changes);
+        } else {
+          boxes[id] = random_box(random, id < few ? 40 : 1, 30, 0);
+          grid.put(id, boxes[id], changes);
+        }
+        take(id);
+        for (BoxGrid::Id other = 0; other < count; ++other) {
+          if (other == id) continue;
+          const bool right = grid.contains(id) && grid.contains(other) && boxes[id].overlaps(boxes[other]);
+          wrong += right != overlapping.contains(std::minmax(id, other));
+        }
+      }
+      INFO("seed " << seed << ", " << scanned_per_change << " compared in the time of a change");
+      CHECK(wrong == 0);
+    }
+  }
+  CHECK(changed > 10'000);
+}
+
 }  // namespace
 }  // namespace kds::collision::test_box_grid_levels

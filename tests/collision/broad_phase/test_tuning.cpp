@@ -122,6 +122,7 @@ TEST_CASE("A tuning that is out of range is refused by name", "[broad_phase]") {
   require_refused<GridTuning>([](auto& t) { t.cells.crowded_chain = -1; }, "CellTuning.crowded_chain");
   require_refused<CellTuning>([](auto& t) { t.guests_per_slab = -1; }, "CellTuning.guests_per_slab");
   require_refused<CellTuning>([](auto& t) { t.share_for_cells = 3; }, "CellTuning.share_for_cells");
+  require_refused<CellTuning>([](auto& t) { t.scanned_per_change = 0; }, "CellTuning.scanned_per_change");
   require_refused<GridTuning>([](auto& t) { t.first_travel = 0; }, "GridTuning.first_travel");
   require_refused<GridTuning>([](auto& t) { t.shrink_after_many = 0; }, "GridTuning.shrink_after_many");
   require_refused<GridTuning>([](auto& t) { t.found_per_pair = 0; }, "GridTuning.found_per_pair");
