@@ -41,12 +41,14 @@ struct RestingContact {
   double aim = 0;         ///< the least gap along the normal when the span ends
   bool proven = true;     ///< a plane stays between the two until the span ends
 
+  std::uint32_t listed = 0;  ///< its place in the list of that of the two that is fixed
+
   // For walks over contacts that lean on each other.
   std::uint64_t seen = 0;   ///< the last walk that has visited it
   std::uint32_t place = 0;  ///< its place in that walk
 };
 
-/// All of it but what walks need.
+/// All of it but its place in a list, and what walks need.
 template <class Archive>
 void archive_members(Archive& archive, RestingContact& c) {
   archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.began, c.left_behind, c.solved, c.depth, c.gap,

@@ -40,11 +40,16 @@ double slack_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree
 
 }  // namespace
 
+/// The contacts of a body, or of another (or a wall) that has fewer: a floor has many. Precondition: a has a member.
+template <class Motion>
+const std::vector<detail::RestingSlot>& RestingContacts<Motion>::fewer(BodySlot a, BodySlot b) const {
+  const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
+  return of_[from_b ? b : a].contacts;
+}
+
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_among(BodySlot a, BodySlot b, int wall) const {
-  // The shorter list is searched: a floor has many contacts.
-  const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
-  for (const Slot slot : of_[from_b ? b : a].contacts) {
+  for (const Slot slot : fewer(a, b)) {
     const Contact& contact = contacts_[slot];
     if (contact.a == a && contact.b == b && contact.wall == wall) return slot;
   }
@@ -56,9 +61,10 @@ template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const Contact& contact) const {
   if (!gaps_.concave(contact)) return find(contact.a, contact.b, contact.wall);
   if (!rests(contact.a)) return none;
-  for (const Slot slot : of_[contact.a].contacts) {
+  for (const Slot slot : fewer(contact.a, contact.b)) {
     const Contact& other = contacts_[slot];
-    if (other.b == contact.b && dot(other.normal, contact.normal) > detail::same_normal) return slot;
+    if (other.a == contact.a && other.b == contact.b && dot(other.normal, contact.normal) > detail::same_normal)
+      return slot;
   }
   return none;
 }
@@ -67,9 +73,8 @@ template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
   const bool leans = contact.b != no_body && !(bodies_.fixed(contact.a) || bodies_.fixed(contact.b));
   if (bodies_.numbered() && leans) throw RestsInPart();
-  // The shorter list is searched: a floor has many contacts.
-  const bool from_b = contact.b != no_body && member(contact.b).contacts.size() < member(contact.a).contacts.size();
-  for (const Slot slot : member(from_b ? contact.b : contact.a).contacts) {
+  member(contact.a);
+  for (const Slot slot : fewer(contact.a, contact.b)) {
     Contact& other = contacts_[slot];
     if (other.a != contact.a || other.b != contact.b || !(dot(other.normal, contact.normal) > detail::same_normal))
       continue;
@@ -81,22 +86,25 @@ void RestingContacts<Motion>::add(const Contact& contact) {
   contacts_[slot].alive = true;
   contacts_[slot].fresh = true;
   contacts_[slot].began = clock_.now;
-  for (const BodySlot id : {contact.a, contact.b}) {
-    if (id == no_body || !bodies_.fixed(id)) continue;
-    auto& listed = of_[id].contacts;
-    for (std::size_t i = listed.size() - 1; i > 0 && began_before(slot, listed[i - 1]); --i) {
-      std::swap(listed[i], listed[i - 1]);
-    }
-  }
   contacts_[slot].depth = std::max(gaps_.overlap(contact), 0.0);
   listener_->tell_resting(true, contacts_[slot]);
 }
 
-/// What a fixed body carries is solved for in this order, which does not depend on the slots of contacts.
+/// The contacts of a body in the order in which they began, which does not depend on their slots.
 template <class Motion>
-bool RestingContacts<Motion>::began_before(Slot x, Slot y) const {
+std::vector<detail::RestingSlot> RestingContacts<Motion>::in_order(BodySlot id) const {
+  std::vector<Slot> slots = of_[id].contacts;
+  if (!bodies_.fixed(id)) return slots;
   const detail::RestingRank rank{&contacts_, &bodies_.keys()};
-  return contacts_[x].began != contacts_[y].began ? contacts_[x].began < contacts_[y].began : rank(x) < rank(y);
+  std::sort(slots.begin(), slots.end(), [&](Slot slot_x, Slot slot_y) {
+    const Contact& x = contacts_[slot_x];
+    const Contact& y = contacts_[slot_y];
+    if (x.began != y.began) return x.began < y.began;
+    if (x.a != y.a || x.b != y.b) return rank(slot_x) < rank(slot_y);
+    if (x.wall != y.wall) return x.wall < y.wall;
+    return std::lexicographical_compare(x.normal.begin(), x.normal.end(), y.normal.begin(), y.normal.end());
+  });
+  return slots;
 }
 
 /// A slot with the contact, which its bodies list.
@@ -112,10 +120,30 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::give_slot(const 
     free_.pop_back();
   }
   contacts_[slot] = contact;
-  member(contact.a).contacts.push_back(slot);
-  if (contact.b == no_body) return slot;
-  member(contact.b).contacts.push_back(slot);
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id == no_body) continue;
+    auto& list = member(id).contacts;
+    if (bodies_.fixed(id)) contacts_[slot].listed = static_cast<std::uint32_t>(list.size());
+    list.push_back(slot);
+  }
   return slot;
+}
+
+/// Takes a contact off the lists of its bodies.
+template <class Motion>
+void RestingContacts<Motion>::unlist(Slot slot) {
+  const Contact& contact = contacts_[slot];
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id == no_body) continue;
+    auto& list = of_[id].contacts;
+    if (bodies_.fixed(id)) {
+      list[contact.listed] = list.back();
+      contacts_[list.back()].listed = contact.listed;
+      list.pop_back();
+    } else {
+      list.erase(std::find(list.begin(), list.end(), slot));
+    }
+  }
 }
 
 template <class Motion>
@@ -125,25 +153,25 @@ void RestingContacts<Motion>::drop(Slot slot) {
   listener_->tell_resting(false, contact);
   releases_.clear(slot);
   free_.push_back(slot);
+  unlist(slot);
   for (const BodySlot id : {contact.a, contact.b}) {
-    if (id == no_body) continue;
-    auto& list = of_[id].contacts;
-    list.erase(std::find(list.begin(), list.end(), slot));
-    if (contact.b == no_body || !bodies_.fixed(id)) disturb(id);
+    if (id != no_body && (contact.b == no_body || !bodies_.fixed(id))) disturb(id);
   }
   if (contact.b != no_body) listener_->changed(contact.a, contact.b);
 }
 
 template <class Motion>
 void RestingContacts<Motion>::drop_all(BodySlot id) {
-  while (rests(id)) drop(of_[id].contacts.back());
+  if (!rests(id)) return;
+  const std::vector<Slot> slots = in_order(id);
+  std::for_each(slots.rbegin(), slots.rend(), [this](Slot slot) { drop(slot); });
 }
 
 template <class Motion>
 bool RestingContacts<Motion>::drop_filtered(BodySlot id) {
   if (!rests(id)) return false;
   std::vector<Slot> over;
-  for (const Slot slot : of_[id].contacts) {
+  for (const Slot slot : in_order(id)) {
     const Contact& contact = contacts_[slot];
     if (contact.b != no_body && !bodies_.may_collide(contact.a, contact.b)) over.push_back(slot);
   }
@@ -155,7 +183,7 @@ template <class Motion>
 std::vector<BodySlot> RestingContacts<Motion>::partners(BodySlot id) const {
   std::vector<BodySlot> found;
   if (!rests(id)) return found;
-  for (const Slot slot : of_[id].contacts) {
+  for (const Slot slot : in_order(id)) {
     const Contact& contact = contacts_[slot];
     if (contact.b != no_body && holds(contact.a, contact.b)) found.push_back(contact.a == id ? contact.b : contact.a);
   }
@@ -178,8 +206,8 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
   const double began = std::max(a.motion.start, b.motion.start);
   Vector3d out = Vector3d::Zero();
   bool left_behind = false;
-  for (const Slot slot : of_[id_a].contacts) {
-    if (contacts_[slot].b != id_b) continue;
+  for (const Slot slot : fewer(id_a, id_b)) {
+    if (contacts_[slot].a != id_a || contacts_[slot].b != id_b) continue;
     out += contacts_[slot].normal;
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
@@ -232,7 +260,7 @@ template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::first_release() const {
   Slot first = releases_.top().slot;
   const Contact& top = contacts_[first];
-  for (const Slot slot : of_[bodies_.fixed(top.a) && top.b != no_body ? top.b : top.a].contacts) {
+  for (const Slot slot : fewer(top.a, top.b)) {
     const Contact& contact = contacts_[slot];
     if (contact.a != top.a || contact.b != top.b || releases_.time(slot) != releases_.top().time) continue;
     const auto& normal = contact.normal;
@@ -346,8 +374,9 @@ typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
   // The list may still contain bodies that have been removed, or solved for, since they were disturbed.
   std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
                [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
-  for (const Member& member : of_) {
-    image.of.push_back(member.contacts);
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    const Member& member = of_[id];
+    image.of.push_back(in_order(id));
     image.span_ends.push_back(member.span_ends);
     image.calm_since.push_back(member.calm_since);
     image.met.push_back(member.met);
@@ -364,6 +393,7 @@ void RestingContacts<Motion>::become(const Image& image) {
   kept_.clear(), of_.clear();
   for (BodySlot id = 0; id < image.of.size(); ++id) {
     member(id).contacts = image.of[id];
+    for (std::uint32_t i = 0; i < image.of[id].size() && bodies_.fixed(id); ++i) contacts_[image.of[id][i]].listed = i;
     member(id).span_ends = image.span_ends[id];
     member(id).calm_since = image.calm_since[id];
     member(id).met = image.met[id] != 0;

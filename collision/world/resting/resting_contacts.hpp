@@ -238,7 +238,7 @@ class RestingContacts {
  private:
   /// The state of a body.
   struct Member {
-    std::vector<Slot> contacts;  ///< of a fixed body in the order of began_before()
+    std::vector<Slot> contacts;  ///< of a fixed body in no order: there may be very many
     std::uint64_t island = 0;    ///< the last island in which it was found
     std::uint32_t place = 0;     ///< in that
     bool disturbed = false;
@@ -259,10 +259,12 @@ class RestingContacts {
     if (of_.size() <= id) of_.resize(id + std::size_t{1});
     return of_[id];
   }
+  const std::vector<Slot>& fewer(BodySlot a, BodySlot b) const;
   Slot find_among(BodySlot a, BodySlot b, int wall) const;
   Slot find_like(const Contact& contact) const;
   Slot give_slot(const Contact& contact);
-  bool began_before(Slot x, Slot y) const;
+  void unlist(Slot slot);
+  std::vector<Slot> in_order(BodySlot id) const;
   Slot first_release() const;
   void note(BodySlot id);
   void drop(Slot slot);

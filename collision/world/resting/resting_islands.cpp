@@ -46,7 +46,7 @@ template <class Motion>
 void RestingContacts<Motion>::solve_fixed(BodySlot id) {
   const Motion before = bodies_.motion(id).restarted(clock_.now);
   Motion motion = before;
-  const std::vector<Slot> contacts = of_[id].contacts;  // some may be dropped
+  const std::vector<Slot> contacts = in_order(id);  // some may be dropped
   const auto is_wall = [&](Slot slot) { return contacts_[slot].wall >= 0; };
   const bool at_wall = std::any_of(contacts.begin(), contacts.end(), is_wall);
   const bool given_anew = at_wall || (Motion::degree >= 3 && of_[id].carried);  // or a wall has let it go

@@ -33,11 +33,11 @@ RestingProgress RestingContacts<Motion>::progress(BodySlot id) const {
   Progress::State state{.span_ends = member.span_ends, .calm_since = member.calm_since};
   if (id < spans_.slots()) state.looked_at = spans_.time(id);
   const auto number = [this](BodySlot slot) { return slot == no_body ? no_body : bodies_.number(slot); };
-  for (const Slot slot : member.contacts) {
+  for (const Slot slot : in_order(id)) {
     Contact contact = contacts_[slot];
     if (bodies_.fixed(id) && contact.b != no_body) continue;  // It goes with the other body.
     contact.a = number(contact.a), contact.b = number(contact.b);
-    contact.seen = 0, contact.place = 0;
+    contact.seen = 0, contact.place = 0, contact.listed = 0;
     state.contacts.push_back(contact);
     state.releases.push_back(releases_.time(slot));
   }
@@ -78,13 +78,11 @@ void RestingContacts<Motion>::go_on_from(BodySlot id, const Progress& progress,
 template <class Motion>
 void RestingContacts<Motion>::let_go(BodySlot id) {
   if (id >= of_.size()) return;
-  for (const Slot slot : of_[id].contacts) {
-    Contact& contact = contacts_[slot];
-    contact.alive = false;
+  for (const Slot slot : std::vector<Slot>(of_[id].contacts)) {
+    contacts_[slot].alive = false;
     releases_.clear(slot);
     free_.push_back(slot);
-    const BodySlot other = contact.a == id ? contact.b : contact.a;
-    if (other != no_body) std::erase(of_[other].contacts, slot);
+    unlist(slot);
   }
   if (id < spans_.slots()) spans_.clear(id);
   of_[id] = {};
@@ -106,11 +104,6 @@ void RestingContacts<Motion>::go_on() {
   const auto slot_of = [this](BodySlot slot) { return bodies_.alive(slot) ? slot : no_body; };
   for (BodySlot id = 0; id < kept_.size(); ++id) {
     if (bodies_.alive(id)) go_on_from(id, kept_[id], slot_of);
-  }
-  for (BodySlot id = 0; id < of_.size(); ++id) {
-    auto& listed = of_[id].contacts;
-    if (listed.empty() || !bodies_.fixed(id)) continue;
-    std::stable_sort(listed.begin(), listed.end(), [this](Slot x, Slot y) { return began_before(x, y); });
   }
   kept_.clear();
 }
