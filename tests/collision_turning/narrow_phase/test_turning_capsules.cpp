@@ -219,6 +219,22 @@ TEST_CASE("a turning capsule meets the surface of a hull when it meets the hull,
   CHECK(resolved > 10);
 }
 
+TEST_CASE("capsules side by side that turn alike meet beside each other", "[narrow-phase][turning][capsule]") {
+  const Vector3d spin(0.0214739, -0.0924943, -0.0961855);
+  for (const double unlike : {0.0, 0x1p-60, 0x1p-52, 0x1p-50, 0x1p-46, 0x1p-41, 0x1p-30}) {
+    for (const double gap : {0x1p-23, 0x1p-30, 0x1p-45}) {
+      CAPTURE(unlike, gap);
+      const Solid<1> a = capsule_of(0.25, 0.5, 0, {0, 0, 0}, {0, 0, 0}, spin);
+      const Solid<1> b = capsule_of(0.25, 0.5, 0, {0, 0.5 + gap, 0}, {0, 0, 0}, (1 + unlike) * spin);
+      const double found = first_meeting(a, b, 0, 1);
+      CHECK(found < 0.04);
+      CHECK((contact_at(a.body(), b.body(), found).normal - Vector3d::UnitY()).norm() < 0.01);
+      // They approach, so it is one at which they bounce, too.
+      CHECK(first_meeting(a, b, 0, 1, ContactMode::resolved) == found);
+    }
+  }
+}
+
 TEST_CASE("a turning capsule and one triangle", "[narrow-phase][turning][capsule]") {
   const auto mesh = std::make_shared<const Mesh>(std::vector<Vector3d>{{-2, -2, 0}, {3, -2, 0}, {0, 3, 0}},
                                                  std::vector<Mesh::Triangle>{{0, 1, 2}});
