@@ -43,18 +43,19 @@ bool nearest_of_cell(const ZonotopeCells& cells, const ZonotopeCell& cell, const
   return true;
 }
 
-/// The direction out of the nearest face of a zonotope that contains x, or none if it does not. A flat zonotope
-/// contains the points of its plane or line, for which the way out is across it.
-Vector3d way_out(const ZonotopeCells& cells, const Vector3d& x, bool& holds) {
-  double deepest = -never;
-  Vector3d out = Vector3d::UnitX();
+/// Where a zonotope is the least deep at x.
+struct WayOut {
+  Vector3d normal = Vector3d::UnitX();
+  double height = -never;  ///< of x above the zonotope along the normal
+};
+/// Across its faces; of a flat zonotope, with one or two generators, across its line or plane.
+WayOut way_out(const ZonotopeCells& cells, const Vector3d& x) {
+  WayOut out;
   const auto look = [&](const Vector3d& direction) {
     const Vector3d normal = normalized(direction) * (dot(direction, x) < 0 ? -1.0 : 1.0);
     double gap = dot(normal, x);
     for (const Generator& each : cells.generators()) gap -= each.length * std::abs(dot(normal, each.direction));
-    if (!(gap > deepest)) return;
-    deepest = gap;
-    out = normal;
+    if (gap > out.height) out = {normal, gap};
   };
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t j = i + 1; j < cells.size(); ++j) {
@@ -62,21 +63,22 @@ Vector3d way_out(const ZonotopeCells& cells, const Vector3d& x, bool& holds) {
       if (norm(product) >= unknown_normal) look(product);
     }
   }
-  if (deepest == -never) {  // All generators are parallel: any direction across them.
+  if (out.height == -never) {  // All generators are parallel: any direction across them.
     int smallest = 0;
     const Vector3d& u = cells.generators()[0].direction;
     u.cwiseAbs().minCoeff(&smallest);
     look(cross(u, Vector3d::Unit(smallest)));
   }
-  holds = deepest < 0;
   return out;
 }
 
-/// From the zonotope to x, unit.
+/// From the zonotope to x, unit. A flat one has no inside: what is below its plane by a rounding may be beside it. Only
+/// where x is on the zonotope itself, up to roundings, the way out is across it.
 Vector3d normal_at(const ZonotopeCells& cells, const Vector3d& x) {
-  bool holds = false;
-  const Vector3d out = way_out(cells, x, holds);
-  if (holds) return out;
+  constexpr double roundings = 0x1p-46;
+  const WayOut out = way_out(cells, x);
+  const bool flat = cells.size() < 3;
+  if (out.height < 0 && !flat) return out.normal;
   double least = never;
   Vector3d apart = Vector3d::Zero();
   cells.every_cell([&](const ZonotopeCell& cell) {
@@ -89,7 +91,9 @@ Vector3d normal_at(const ZonotopeCells& cells, const Vector3d& x) {
     }
     return true;
   });
-  return least > 0 ? normalized(apart) : out;
+  double size = norm(x);
+  for (std::size_t k = 0; k < cells.size(); ++k) size += norm(cells.half(k));
+  return std::sqrt(least) > roundings * size ? normalized(apart) : out.normal;
 }
 
 }  // namespace

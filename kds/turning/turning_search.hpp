@@ -66,7 +66,7 @@ class TurningSearch {
   struct Stretch {
     double l, r;
     int halvings;
-    int precision;  ///< 0: doubles; 1: double-doubles; 1 + n: 80 2^n bits
+    int precision;  ///< 0: doubles; 1: double-doubles; 2: 160 bits; 2 + n: 160 2^n bits, and all derivatives
   };
 
   static double stop_after(double l, double step, double horizon) {
@@ -107,11 +107,19 @@ class TurningSearch {
     if (!(unit * rate_ <= 1)) return first_negative_of_halves(f, s);
     if (s.precision == 1) {
       ++turning_search_counters.extended;
-      return first_negative(f, s, precise_turning_model<Ball<DoubleDouble>>(certificate_, side_, m, exponent), m, unit);
+      return first_negative(f, s, model<Ball<DoubleDouble>, usual_order<Certificate>>(m, exponent), m, unit);
     }
     ++turning_search_counters.enclosed;
-    return first_negative(f, s, precise_turning_model<Exact>(certificate_, side_, m, exponent, 80 << (s.precision - 1)),
-                          m, unit);
+    if (s.precision == 2) {
+      return first_negative(f, s, model<Exact, usual_order<Certificate>>(m, exponent, 160), m, unit);
+    }
+    const int bits = 160 << (s.precision - 2);
+    return first_negative(f, s, model<Exact, whole_order<Certificate>>(m, exponent, bits), m, unit);
+  }
+
+  template <class Number, int Order>
+  TaylorModel<Order> model(double m, int exponent, int bits = 0) const {
+    return precise_turning_model<Number, Order>(certificate_, side_, m, exponent, bits);
   }
 
   double first_negative_of_few(const Stretch& s) const {

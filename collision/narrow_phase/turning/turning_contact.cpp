@@ -115,16 +115,16 @@ auto as_they_stand(const Body<Degree>& a, const Body<Degree>& b, const Ask& ask)
 }
 
 /// The first double in (t, horizon] at which two bodies that overlap just after t do so more than they do then, by more
-/// than roundings of their coordinates, or `never`. It is found as the contact of one body with the other made smaller.
+/// than a part of their coordinates, or `never`. It is found as the contact of one body with the other made smaller.
 template <class Pair, int Degree>
-double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
-  constexpr double roundings = 0x1p-46;
+double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon,
+                    double part) {
   double coordinates = norm(a.motion.path.position(t)) + norm(b.motion.path.position(t)) + b.shape.bounding_radius;
   if (!unbounded(a.shape.shape)) coordinates += a.shape.bounding_radius;
   // In proportion to the depth it may not be: what sinks a little deeper with each contact would sink ever faster.
   const double depth = pair.depth(t);
   double deeper = never;
-  for (double more = roundings * coordinates;; more *= 2) {  // until the smaller pair is apart for certain
+  for (double more = part * coordinates;; more *= 2) {  // until the smaller pair is apart for certain
     const auto smaller = pair.smaller(depth + more);
     if (!smaller) break;
     const WaysApart<Pair> ways(*smaller);
@@ -138,15 +138,16 @@ double falls_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>&
 /// The same of bodies of which one may be a hull that is a box: it is made smaller as all hulls are, which is not how
 /// boxes are.
 template <class Pair, int Degree>
-double bodies_fall_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon) {
+double bodies_fall_deeper(const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t, double horizon,
+                          double part) {
   if constexpr (std::is_same_v<Pair, TurningBoxes<Degree>>) {
     const auto is_hull = [](const Body<Degree>& body) { return polytope_of(body.shape.shape) != nullptr; };
     if (is_hull(a) || is_hull(b)) {
       const TurningPolytopes<Degree> hulls(a.motion, ConvexCore(a.shape.shape), b.motion, ConvexCore(b.shape.shape));
-      return falls_deeper<TurningPolytopes<Degree>, Degree>(hulls, a, b, t, horizon);
+      return falls_deeper<TurningPolytopes<Degree>, Degree>(hulls, a, b, t, horizon, part);
     }
   }
-  return falls_deeper<Pair, Degree>(pair, a, b, t, horizon);
+  return falls_deeper<Pair, Degree>(pair, a, b, t, horizon, part);
 }
 
 /// Of a half-space (a). The middle of what is lowest of b, or where that does not approach but another corner of it
@@ -225,14 +226,14 @@ bool approach_at(const Body<Degree>& a, const Body<Degree>& b, double t) {
 /// Of two bodies that penetrate just after t and do not approach.
 struct Overlap {
   double parts;   ///< when they part; or `never`, if they are deeper in each other before
-  double deeper;  ///< when they are deeper in each other by more than roundings, or `never`
+  double deeper;  ///< when they are deeper in each other by more than a part of their coordinates, or `never`
 };
 template <class Ways, class Pair, int Degree>
 Overlap overlap_from(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b, double t,
-                     double horizon) {
+                     double horizon, double part) {
   // Mostly they have parted at once.
   double parts = ways.first_parting(t, std::min(horizon, t + 0x1p-10 * std::min(pair.time_of_turning(), 1.0)));
-  const double deeper = bodies_fall_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon));
+  const double deeper = bodies_fall_deeper<Pair, Degree>(pair, a, b, t, std::min(parts, horizon), part);
   if (parts == never) parts = ways.first_parting(t, std::min(deeper, horizon));
   return {parts, deeper};
 }
@@ -250,17 +251,21 @@ std::optional<ContactEstimate> apart_for_a_while(const Ways& ways, double t, dou
 }
 
 /// The first contact in [t, horizon] of two bodies that penetrate just after t, or `never`. Those that do not approach
-/// are looked at next when they are deeper in each other, or again after they have parted. `estimate`: an earlier time
-/// will do.
+/// are looked at next when they are deeper in each other by more than roundings, then by twice as much each time, so
+/// that there is an end, or again after they have parted. `estimate`: an earlier time will do.
 template <class Ways, class Pair, int Degree>
 ContactEstimate first_approach(const Ways& ways, const Pair& pair, const Body<Degree>& a, const Body<Degree>& b,
                                double t, double horizon, bool estimate) {
+  constexpr double roundings = 0x1p-46;
+  double part = roundings;
   while (t <= horizon && !approach_at<Degree>(a, b, t)) {
-    const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t, horizon);
+    const Overlap overlap = overlap_from<Ways, Pair, Degree>(ways, pair, a, b, t, horizon, part);
     if (!(overlap.parts < overlap.deeper)) {
       t = overlap.deeper;
+      part *= 2;
       continue;
     }
+    part = roundings;
     if (estimate) {
       if (const auto found = apart_for_a_while(ways, overlap.parts, horizon)) return *found;
     }

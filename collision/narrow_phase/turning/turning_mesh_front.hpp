@@ -43,13 +43,48 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
       case Known::contact:
         look(item.time);
         if (mode_ == ContactMode::transparent || counts(item.nodes)) return item.time;
-        push(search_.passed_over(search_.pair(item.nodes), view_, horizon_), item.nodes, Known::apart_until);
+        pass_over(item);
         break;
       case Known::entered:
         if (entered_counts(item)) return item.time;
     }
   }
   return never;
+}
+
+/// When a pair that penetrates and does not approach is to be looked at again: just after it has parted, or when it is
+/// deeper by more than roundings of coordinates. Where nothing tells when it is deeper, as of a ball or a capsule whose
+/// core goes through the triangle, after a short time, and then after twice the time each: else there would be no end.
+template <int Degree, class Side>
+auto TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon, int tries) const
+    -> PassedOver {
+  const double t = view.time;
+  const auto ways = this->ways(pair, view);
+  const double soon = std::max(next_up(t), t + short_time(view, horizon));  // mostly they have parted by then
+  if (const double parts = ways.first_parting(t, std::min(soon, horizon), true); parts != never) {
+    return {parts, true};
+  }
+  const double depth = std::max(0.0, -pair.gap(view));
+  const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
+  const Pair shallow = pair.with_slack(slack);
+  double deeper = t;
+  while (deeper < never) {
+    const int plane = pair.shallow_plane(deeper, slack);  // faces that lie on each other may do so for long
+    const double next =
+        plane >= 0 ? pair.holds_until(plane, slack, deeper, horizon) : shallow.apart_until(deeper, horizon);
+    if (next == deeper) break;
+    deeper = next;
+  }
+  const bool proven = deeper > t;
+  deeper = std::max({deeper, soon, proven ? t : t + std::ldexp(short_time(view, horizon), tries)});
+  const double parts = ways.first_parting(t, std::min(deeper, horizon), true);
+  return {std::min(parts, deeper), proven || parts != never};
+}
+
+template <int Degree, class Side>
+void TurningMeshSearch<Degree, Side>::Front::pass_over(const Item& item) {
+  const auto passed = search_.passed_over(search_.pair(item.nodes), view_, horizon_, item.tries);
+  push(passed.until, item.nodes, Known::apart_until, passed.proven ? 0 : item.tries + 1);
 }
 
 /// Until when planes, one after the other, are found that separate all of the two bodies. Of those that are near each
@@ -164,7 +199,7 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int t
   const double contact = search_.ways(pair, view_).first_penetration(t, until, true);
   note_entries(nodes, pair, std::min(contact, until));
   if (contact != never) {
-    push(contact, nodes, Known::contact);
+    push(contact, nodes, Known::contact, contact > t ? 0 : tries);
     if (mode_ == ContactMode::transparent) horizon_ = contact;
     return;
   }

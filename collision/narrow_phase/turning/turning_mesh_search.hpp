@@ -94,7 +94,7 @@ class TurningMeshSearch {
     double seen;  ///< the time of the view that has told so
     NodePair nodes;
     Known known;
-    int tries = 0;  ///< by exact signs, or at what has entered, one after the other
+    int tries = 0;  ///< by exact signs, or at what penetrates or has entered, one after the other
     /// Which one of the same time is first makes no difference.
     friend bool operator>(const Item& x, const Item& y) { return x.time > y.time; }
   };
@@ -142,6 +142,7 @@ class TurningMeshSearch {
     void visit_exactly(NodePair nodes, int tries);
     void note_entries(NodePair nodes, const Pair& pair, double until);
     bool counts(NodePair nodes) const;
+    void pass_over(const Item& item);
     bool entered_counts(const Item& item);
 
     const TurningMeshSearch& search_;
@@ -247,7 +248,11 @@ class TurningMeshSearch {
   }
   void move_to_middle(TurningTouch& touch, const std::vector<TurningTouch>& flat, double t) const;
   std::optional<TurningTouch> entered_touch(const View& view, const View& then) const;
-  double passed_over(const Pair& pair, const View& view, double horizon) const;
+  struct PassedOver {
+    double until;
+    bool proven;  ///< by doubles or exact signs, not only for a short time
+  };
+  PassedOver passed_over(const Pair& pair, const View& view, double horizon, int tries) const;
   /// In so short a time they do not get deeper by more than 2^-40 of their distances, if they do not approach.
   double short_time(const View& view, double horizon) const {
     return 0x1p-20 * view.stretch(a_.radius(0) + norm(view.way.value), horizon - view.time);
@@ -264,28 +269,6 @@ class TurningMeshSearch {
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
-
-/// When a pair that penetrates and does not approach is to be looked at again: just after it has parted, or when it is
-/// deeper by more than roundings of coordinates.
-template <int Degree, class Side>
-double TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& view, double horizon) const {
-  const double t = view.time;
-  const auto ways = this->ways(pair, view);
-  const double soon = std::max(next_up(t), t + short_time(view, horizon));  // mostly they have parted by then
-  if (const double parts = ways.first_parting(t, std::min(soon, horizon), true); parts != never) return parts;
-  const double depth = std::max(0.0, -pair.gap(view));
-  const double slack = (1 + 0x1p-10) * depth + pair.roundings(view);
-  const Pair shallow = pair.with_slack(slack);
-  double deeper = t;
-  for (double proven = t; deeper < never;) {
-    const int plane = pair.shallow_plane(deeper, slack);  // faces that lie on each other may do so for long
-    proven = plane >= 0 ? pair.holds_until(plane, slack, deeper, horizon) : shallow.apart_until(deeper, horizon);
-    if (proven == deeper) break;
-    deeper = proven;
-  }
-  deeper = std::max(deeper, soon);
-  return std::min(deeper, ways.first_parting(t, std::min(deeper, horizon), true));
-}
 
 /// Where solids touch that enter each other at flush edges just after the time of `then`, seen at that of the view: in
 /// the middle of the places that approach as fast as the fastest one, along the same direction. None if they do not

@@ -105,7 +105,7 @@ class WaysApart {
   /// just after t.
   double first_parting(double t, double horizon, bool penetrates = false) const {
     constexpr double worth = 0x1p-6;  // of the time of turning: shorter waits are left to exact signs
-    constexpr double part = 0x1p-4;   // of it that these look at once
+    double part = 0x1p-4;  // of it that these look at once: for what overlaps for long, twice as much each time
     while (t <= horizon) {
       if (!penetrates && !penetrate(t)) return t;
       const double turning = pair_.time_of_turning();
@@ -122,6 +122,7 @@ class WaysApart {
       if (opens != never) return opens;
       if (until == horizon) return never;
       t = until;
+      part = std::min(1.0, 2 * part);
     }
     return never;
   }

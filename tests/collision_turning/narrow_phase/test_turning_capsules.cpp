@@ -26,6 +26,7 @@ using kds::tests::check_meeting;
 using kds::tests::first_meeting;
 using kds::tests::motion_of;
 using kds::tests::Random;
+using kds::tests::random_vector;
 
 template <int Degree>
 using Solid = kds::tests::TurningSolid<Degree>;
@@ -217,6 +218,28 @@ TEST_CASE("a turning capsule meets the surface of a hull when it meets the hull,
   }
   CHECK(meetings > 15);
   CHECK(resolved > 10);
+}
+
+TEST_CASE("capsules side by side that turn alike meet beside each other", "[narrow-phase][turning][capsule]") {
+  // Turned alike but for a rounding, they are sides of a parallelogram that is as thin as that, and in any plane: also
+  // in one in which they are beside each other.
+  Random random(1);
+  int met = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d spin = random_vector(random, 0.2);
+    const double gap = std::ldexp(1.0, random.integer(-45, -23));
+    const double unlike = std::ldexp(1.0, random.integer(-60, -40));
+    CAPTURE(i, unlike, gap);
+    const Solid<1> a = capsule_of(0.25, 0.5, 2, {0, 0, 0}, {0, 0, 0}, spin);
+    const Solid<1> b = capsule_of(0.25, 0.5, 2, {0, 0.5 + gap, 0}, {0, 0, 0}, (1 + unlike) * spin);
+    const double found = first_meeting(a, b, 0, 0.5);
+    if (found == never) continue;
+    CHECK((contact_at(a.body(), b.body(), found).normal - Vector3d::UnitY()).norm() < 0.1);
+    // They approach, so it is one at which they bounce, too.
+    CHECK(first_meeting(a, b, 0, 0.5, ContactMode::resolved) == found);
+    ++met;
+  }
+  CHECK(met > 250);
 }
 
 TEST_CASE("a turning capsule and one triangle", "[narrow-phase][turning][capsule]") {

@@ -97,19 +97,23 @@ TEMPLATE_TEST_CASE_SIG("expansions hold the truth", "[turning_expansion]",
     int exponent = 0;
     std::frexp(rho, &exponent);
     const double unit = std::ldexp(1.0, exponent - 1);
-    const auto fine = kds::detail::precise_turning_model<Ball<DoubleDouble>>(f, 1, m, exponent - 1);
+    constexpr int usual = kds::detail::usual_order<decltype(f)>, whole = kds::detail::whole_order<decltype(f)>;
+    const auto fine = kds::detail::precise_turning_model<Ball<DoubleDouble>, usual>(f, 1, m, exponent - 1);
     compare(fine, f, m, unit, random, extended, extended_slopes, wrong);
     // It is multiplied by a power of two, which brings its derivatives below 1.
-    const auto finest = kds::detail::precise_turning_model<Exact>(f, 1, m, exponent - 1, 160);
-    const double ratio = fine.c[1] / finest.c[1];
-    const int scale = static_cast<int>(std::lround(std::log2(ratio)));
-    wrong += std::abs(std::ldexp(ratio, -scale) - 1) > 1e-6;
-    auto scaled = finest;
-    for (auto* numbers : {&scaled.c, &scaled.error}) {
-      for (double& x : *numbers) x = std::ldexp(x, scale);
-    }
-    scaled.next = std::ldexp(scaled.next, scale);
-    compare(scaled, f, m, unit, random, exact, exact_slopes, wrong);
+    const auto check_scaled = [&](auto finest, Random& points) {
+      const double ratio = fine.c[1] / finest.c[1];
+      const int scale = static_cast<int>(std::lround(std::log2(ratio)));
+      wrong += std::abs(std::ldexp(ratio, -scale) - 1) > 1e-6;
+      for (auto* numbers : {&finest.c, &finest.error}) {
+        for (double& x : *numbers) x = std::ldexp(x, scale);
+      }
+      finest.next = std::ldexp(finest.next, scale);
+      compare(finest, f, m, unit, points, exact, exact_slopes, wrong);
+    };
+    Random same_points = random;
+    check_scaled(kds::detail::precise_turning_model<Exact, usual>(f, 1, m, exponent - 1, 160), same_points);
+    check_scaled(kds::detail::precise_turning_model<Exact, whole>(f, 1, m, exponent - 1, 160), random);
   }
   CHECK(wrong == 0);
   for (const Widths* widths : {&doubles, &double_slopes, &extended, &extended_slopes, &exact, &exact_slopes}) {
