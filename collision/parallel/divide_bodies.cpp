@@ -238,7 +238,7 @@ std::vector<typename Domains<Motion>::Overlap> Domains<Motion>::end() {
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Domains<motion>;
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

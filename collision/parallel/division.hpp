@@ -64,9 +64,9 @@ struct Division {
   double halo = 0;                ///< how far outside a cell its domain knows bodies
   double greatest_radius = 0;     ///< of bodies that have owners
   double greatest_speed = 0;      ///< of these, along an axis, at the beginnings of motions
-  double greatest_bend = 0;       ///< of these: half an acceleration, along an axis
+  double straight_for = never;    ///< s: so long, about, their paths stay nearer than a halo to straight lines
   double largest_guided = never;  ///< greatest radius of bodies that have owners though no other body moves them
-  double bulge = 0;               ///< how far a path may leave the chord between two of its places within a window
+  double window_end = never;      ///< s: the window that begins next is over by then
   const SlotsByNumber* slots = nullptr;  ///< of the bodies that are stored; null where they are numbers
   DomainSets sets{partition.size()};
   std::vector<DomainIndex> owner{};         ///< by slot
@@ -103,16 +103,26 @@ template <int Degree>
 Eigen::Vector3d place_at(const certificates::PointMotion<Degree>& path, double t) {
   return path.position(std::max(t, path.start));
 }
-/// Half its acceleration, along an axis.
-template <int Degree>
-double bend_of(const certificates::PointMotion<Degree>& path) {
-  if constexpr (Degree == 2) return path.coefficients[2].cwiseAbs().maxCoeff();
-  return 0;
-}
 /// A box in which the centre is during a stretch of time.
 template <int Degree>
 StaticBox swept_place(const certificates::PointMotion<Degree>& path, double from, double to) {
   return swept_point(path, std::max(from, path.start), std::max(to, path.start));
+}
+/// How far, along an axis, a path may leave the chord between any two of its places from one time to another, at most:
+/// an eighth of the greatest acceleration there, times the square of the time.
+template <int Degree>
+double bulge_of(const certificates::PointMotion<Degree>& path, double from, double to) {
+  double half_acceleration = 0;
+  if constexpr (Degree == 2) half_acceleration = path.coefficients[2].cwiseAbs().maxCoeff();
+  if constexpr (Degree >= 3) {
+    certificates::PointMotion<Degree - 2> halved{.start = path.start};
+    for (std::size_t i = 2; i <= Degree; ++i) {
+      halved.coefficients[i - 2] = path.coefficients[i] * static_cast<double>(i * (i - 1) / 2);
+    }
+    const StaticBox swept = swept_place(halved, from, to);
+    half_acceleration = swept.min.abs().max(swept.max.abs()).maxCoeff();
+  }
+  return half_acceleration > 0 ? half_acceleration * (to - from) * (to - from) / 4 : 0;
 }
 
 namespace detail {
@@ -233,11 +243,14 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
                                std::span<const BodySlot> slots, double now, const ParallelOptions& options,
                                std::size_t threads, Team& team) {
   std::vector<Eigen::Vector3d> places;
-  double farthest = 0, radius = 0, speed = 0, bend = 0;
+  double farthest = 0, radius = 0, speed = 0;
+  constexpr std::size_t degree = Motion::degree;
+  std::array<double, degree + 1> terms{};  // of paths, along an axis: what is from the square of the time on bends them
   Eigen::Array3d high = Eigen::Array3d::Constant(-never), minus_low = high;
   const auto note = [&](const auto& path, double t) {
     speed = std::max(speed, path.velocity(t).cwiseAbs().maxCoeff());
-    bend = std::max(bend, bend_of(path));
+    const auto local = degree >= 3 ? path.restarted(t) : path;
+    for (std::size_t i = 2; i <= degree; ++i) terms[i] = std::max(terms[i], local.coefficients[i].cwiseAbs().maxCoeff());
   };
   const double largest_guided = detail::largest_guided(bodies, scripts, slots, team);
   for (const BodySlot slot : slots) {
@@ -250,19 +263,27 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
     radius = std::max(radius, bodies[slot].bounding_radius);
     high = high.max(place.array()), minus_low = minus_low.max(-place.array());
     note(path, std::max(now, path.start));
-    bend = std::max(bend, bodies.free_acceleration(slot).cwiseAbs().maxCoeff());  // of what rests, when it does no more
+    for (std::size_t i = 2; i <= degree; ++i) {  // of what rests, when it does no more
+      terms[i] = std::max(terms[i], bodies.free_term(slot, i, now).cwiseAbs().maxCoeff());
+    }
     for (const Motion& piece : scripts.to_come(slot)) note(path_of(piece), path_of(piece).start);
   }
   std::array<std::uint64_t, 1> count{places.size()};
-  std::array greatest{farthest, radius,  speed,        bend,         high[0],
-                      high[1],  high[2], minus_low[0], minus_low[1], minus_low[2]};
+  std::vector<double> greatest{farthest, radius,       speed,        high[0],     high[1],
+                               high[2],  minus_low[0], minus_low[1], minus_low[2]};
+  greatest.insert(greatest.end(), terms.begin(), terms.end());
   team.combine(count, greatest);
   if (count[0] < 2) return std::nullopt;
-  farthest = greatest[0], radius = greatest[1], speed = greatest[2], bend = greatest[3];
-  std::copy_n(&greatest[4], 3, high.begin()), std::copy_n(&greatest[7], 3, minus_low.begin());
+  farthest = greatest[0], radius = greatest[1], speed = greatest[2];
+  std::copy_n(&greatest[3], 3, high.begin()), std::copy_n(&greatest[6], 3, minus_low.begin());
+  std::copy_n(&greatest[9], terms.size(), terms.begin());
   const double halo = 2 * radius + options.halo * detail::spacing(count[0], -minus_low, high);
   // Places must be known far more exactly than the distances of bodies.
   if (!(std::isfinite(halo) && halo > 0x1p-20 * farthest)) return std::nullopt;
+  double straight_for = never;
+  for (std::size_t i = 2; i <= degree; ++i) {
+    if (terms[i] > 0) straight_for = std::min(straight_for, std::pow(halo / terms[i], 1.0 / static_cast<double>(i)));
+  }
   std::size_t wanted = domains_wanted(options, threads, count[0]);
   Partition partition(places, wanted, team);
   while (wanted > 1 && options.domains == 0 && !detail::wide_enough(partition, halo)) {
@@ -274,7 +295,7 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
                   .halo = halo,
                   .greatest_radius = radius,
                   .greatest_speed = speed,
-                  .greatest_bend = bend,
+                  .straight_for = straight_for,
                   .largest_guided = largest_guided};
 }
 

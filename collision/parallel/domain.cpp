@@ -22,14 +22,16 @@ WorldOptions for_domain(WorldOptions options, double now) {
 
 template <class Motion>
 Domain<Motion>::Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs,
-                       bool first)
+                       bool first, const ContactLaw* law)
     : division_(division),
       index_(index),
       logs_(logs),
       first_(first),
-      resolves_(options.response == Response::elastic),
+      resolves_(options.response != Response::none),
+      by_law_(law != nullptr),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)) {
+  engine_.respond_by(law);
   // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away.
   const Partition& partition = division.partition;
   partition.each_within(partition.cell(index), 2 * division.halo, [&](std::size_t other) {
@@ -83,6 +85,7 @@ void Domain<Motion>::begin_window() {
   for (Known& known : known_) known.role = Role::unowned, known.changed = false;
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
+  bulge_ = 0;
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
@@ -100,16 +103,24 @@ void Domain<Motion>::begin_window() {
       continue;
     }
     ++report_.owned;
-    const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot);
-    if (steady && inside(bodies.path(slot).position(now), cell) - division_.bulge > 2 * division_.halo) {
+    const auto& path = bodies.path(slot);
+    const double bulge = bulge_of(path, now, division_.window_end);
+    const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot) && bulge <= division_.halo / 4;
+    if (steady && inside(path.position(now), cell) - bulge > 2 * division_.halo) {
       known.role = Role::deep;
-      continue;
+      bulge_ = std::max(bulge_, bulge);
+    } else {
+      begin_to_follow(slot, now);
     }
-    known.role = Role::followed;
-    known.place = static_cast<std::uint32_t>(followed_.size());
-    followed_.push_back({slot, strangers_to(number(slot)), now, bodies.motion(slot)});
   }
   std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
+}
+
+template <class Motion>
+void Domain<Motion>::begin_to_follow(BodySlot slot, double t) {
+  known_[slot].role = Role::followed;
+  known_[slot].place = static_cast<std::uint32_t>(followed_.size());
+  followed_.push_back({slot, strangers_to(number(slot)), t, engine_.bodies().motion(slot)});
 }
 
 template <class Motion>
@@ -286,8 +297,8 @@ void Domain<Motion>::note_change(BodySlot slot, double t) {
   const Motion& motion = engine_.bodies().motion(slot);
   if (known.role == Role::deep) {
     report_.stayed = report_.stayed && stays_deep(path_of(motion).position(t));
-    // What carries it may accelerate it more than was known when the scene was divided.
-    if (bend_of(path_of(motion)) > division_.greatest_bend) report_.divisible = false;
+    // It has been deep until now, and may bend more from now on, as what ceases to rest does.
+    if (!(bulge_of(path_of(motion), t, division_.window_end) <= bulge_)) begin_to_follow(slot, t);
     return;
   }
   if (known.role == Role::followed) {
@@ -322,7 +333,7 @@ void Domain<Motion>::piece(World&, BodyId id) {
 }
 
 #define KDS_INSTANTIATE(motion) template class Domain<motion>;
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

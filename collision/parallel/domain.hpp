@@ -66,8 +66,9 @@ class Domain final : private BasicWorldListener<Motion> {
   using Change = MotionChange<Motion>;
 
   /// `logs`: whether events are recorded. `first`: of the domains with one store, this tells it of bodies without an
-  /// owner. The division must outlive the domain.
-  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs, bool first);
+  /// owner. `law`: as ParallelOptions::law. The division must outlive the domain.
+  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs, bool first,
+         const ContactLaw* law = nullptr);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 
@@ -147,7 +148,7 @@ class Domain final : private BasicWorldListener<Motion> {
   }
   void rests_at_wall(World&, const WallEvent& event) override { rest(Kind::rests_at_wall, event); }
   void wakes_at_wall(World&, const WallEvent& event) override { rest(Kind::wakes_at_wall, event); }
-  void passes(World&, const PairEvent&) override { report_.divisible = false; }
+  void passes(World&, const PairEvent& event) override;
 
   BodySlot number(BodySlot slot) const { return engine_.bodies().number(slot); }
   /// The id in the scene of a body that has this one here.
@@ -155,6 +156,7 @@ class Domain final : private BasicWorldListener<Motion> {
   /// Where a body is in slots_, or would be.
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);
+  void begin_to_follow(BodySlot slot, double t);
   BodySlot slot_of(BodySlot number) const { return slots_[place_of(number)]; }
   DomainIndex owner_of(BodySlot slot) const;
   bool is_first_to_know(BodySlot a, BodySlot b) const;
@@ -171,7 +173,7 @@ class Domain final : private BasicWorldListener<Motion> {
   void note_pieces(double since);
   void follow(Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
-    return inside(place, division_.partition.cell(index_)) - division_.bulge >= division_.halo;
+    return inside(place, division_.partition.cell(index_)) - bulge_ >= division_.halo;
   }
 
   const Division& division_;
@@ -179,6 +181,7 @@ class Domain final : private BasicWorldListener<Motion> {
   const bool logs_;
   const bool first_;
   const bool resolves_;  ///< whether contacts change motions
+  const bool by_law_;    ///< whether a law of the caller's says how
   World world_;
   Engine<Motion>& engine_;
   std::vector<BodySlot> slots_;  ///< of the bodies that are known, ascending by their numbers
@@ -199,11 +202,12 @@ class Domain final : private BasicWorldListener<Motion> {
   /// set.
   std::vector<std::vector<std::uint32_t>> strangers_;
   std::unordered_map<DomainSets::Number, std::uint32_t> strangers_to_;
+  double bulge_ = 0;  ///< how far the paths of deep bodies may leave the chords between two of their places
   DomainReport report_;
 };
 
 #define KDS_DECLARE(motion) extern template class Domain<motion>;
-KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

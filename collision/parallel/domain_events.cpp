@@ -26,11 +26,14 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   if (!mine) return;
   const bool shared = !fixed && of_a != of_b && of_a != Division::nobody && of_b != Division::nobody;
   // Of a shared one the owner of the first body counts it.
-  if (!shared || of_a == index_) ++report_.told[static_cast<std::size_t>(kind)];
+  const auto counted = static_cast<std::size_t>(kind);
+  if (counted < report_.told.size() && (!shared || of_a == index_)) ++report_.told[counted];
   if (!logs_) return;
   const DomainIndex other = of_a == index_ ? of_b : of_a;
-  put({kind, shared ? other : DomainEvent::nobody, key(event.a), key(event.b), event.contact, event.user_data_a,
-       event.user_data_b});
+  DomainEvent recorded{kind,          shared ? other : DomainEvent::nobody, key(event.a), key(event.b),
+                       event.contact, event.user_data_a,                     event.user_data_b};
+  if (recorded.follows()) recorded.cause = cause_at(event.contact.time);
+  put(recorded);
 }
 
 /// Independent events of one time, and those that follow from one, are put into the order of ids in the scene, as this
@@ -147,6 +150,17 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
   changed(slot, event.contact.time);
 }
 
+/// A law leaves two bodies approaching. (Where nothing could keep them apart, what rests decides it, of more bodies than
+/// these.)
+template <class Motion>
+void Domain<Motion>::passes(World&, const PairEvent& event) {
+  if (!by_law_) {
+    report_.divisible = false;
+    return;
+  }
+  record(DomainEvent::Kind::passes, event);
+}
+
 /// What a body rests on has given it another motion. (Pieces of bodies that precess are no changes: note_pieces().)
 template <class Motion>
 void Domain<Motion>::moved(World&, BodyId id) {
@@ -154,7 +168,7 @@ void Domain<Motion>::moved(World&, BodyId id) {
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Domain<motion>;
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -10,8 +10,9 @@
 namespace kds::collision {
 
 template <class Motion>
-Domains<Motion>::Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team)
-    : options_(options), threads_(threads), store_(options, whole), team_(team) {}
+Domains<Motion>::Domains(const WorldOptions& options, const ParallelOptions& parallel, std::size_t threads,
+                         Engine<Motion>& whole, Team& team)
+    : options_(options), law_(parallel.law), threads_(threads), store_(options, whole), team_(team) {}
 
 template <class Motion>
 template <class Work>
@@ -39,7 +40,7 @@ void Domains<Motion>::make(double now) {
   heard_.clear();
   first_ = (team_.rank() * size() + team_.count() - 1) / team_.count();
   for (std::size_t i = first_; i < size() && is_here(i); ++i) {
-    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_));
+    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_, law_));
   }
   std::vector<std::vector<BodySlot>> known(domains_.size());
   const auto& bodies = store_.bodies();
@@ -360,7 +361,7 @@ std::string_view Domains<Motion>::broad_phase() const {
 }
 
 #define KDS_INSTANTIATE(motion) template class Domains<motion>;
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

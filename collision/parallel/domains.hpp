@@ -38,7 +38,8 @@ class Domains {
   using Overlap = typename Transfer<Motion>::Overlap;
 
   /// `whole`: the world of the whole scene, which must outlive this.
-  Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team);
+  Domains(const WorldOptions& options, const ParallelOptions& parallel, std::size_t threads, Engine<Motion>& whole,
+          Team& team);
 
   bool any() const { return division_ != nullptr; }
   std::size_t size() const { return any() ? division_->partition.size() : 1; }
@@ -76,8 +77,8 @@ class Domains {
   /// that it has read, as after add_shares(). If it throws, nothing changes.
   void load(const typename Engine<Motion>::Image& rest, const ReadBodies& read);
 
-  /// In the window that begins next, a path may leave the chord between two of its places by this much.
-  void set_bulge(double bulge) { division_->bulge = bulge; }
+  /// The window that begins next is over by then.
+  void set_window_end(double end) { division_->window_end = end; }
   /// Makes the domains anew, each with a new window, as the store has the bodies at a time.
   void make(double now);
   /// Runs a step of a window. Throws what a domain throws; other processes then wait for this one in vain.
@@ -161,6 +162,7 @@ class Domains {
   void check_attached(BodySlot sensor, BodySlot owner) const;
 
   const WorldOptions options_;
+  const ContactLaw* const law_;
   const std::size_t threads_;
   BodyStore<Motion> store_;
   Team& team_;
@@ -182,7 +184,7 @@ class Domains {
 };
 
 #define KDS_DECLARE(motion) extern template class Domains<motion>;
-KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

@@ -54,8 +54,14 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
         world_(options, &relayed_),
         store_(detail::EngineOf<Motion>::of(world_)),
         now_(options.start_time),
-        domains_(options, threads_, store_, team_),
-        logs_(records(listener)) {}
+        domains_(options, parallel, threads_, store_, team_),
+        logs_(records(listener)) {
+    if (parallel_.law && options.response != Response::callback) {
+      throw std::invalid_argument("ParallelOptions.law: needs WorldOptions.response callback");
+    }
+    store_.respond_by(parallel_.law);
+    responds_ = options.response != Response::callback || parallel_.law;
+  }
 
   World& whole() {
     require_told("ParallelWorld::whole");
@@ -198,7 +204,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
 
   /// Divides the scene, which is to be run up to t; false if it is to be run as one world.
   bool divide(double t) {
-    if (domains_wanted(parallel_, workers(), world_.size()) < 2) {
+    if (!responds_ || domains_wanted(parallel_, workers(), world_.size()) < 2) {
       stretch_ = 0;
       return false;
     }
@@ -215,7 +221,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     auto division = find_division(answered);
     if (!division) return false;
     if (!(length_.seconds() > 0)) {
-      const double fastest = division->greatest_speed + std::sqrt(division->greatest_bend * division->halo);
+      const double fastest = division->greatest_speed + division->halo / division->straight_for;
       length_ = WindowLength(fastest > 0 ? division->room() / (4 * fastest) : parallel_.longest_window);
     }
     auto overlaps = apart() ? domains_.take_overlaps() : store_.transfer().overlaps();
@@ -244,15 +250,11 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     store_.transfer().go_on(now, overlaps);
   }
 
-  /// A path may leave the chord between two of its places by so much; windows are so short that it is far less than the
-  /// halo.
+  /// Windows are so short that paths hardly bend.
   void begin_window() {
     window_begun_ = now_;
-    longest_ = parallel_.longest_window;
-    const Division& division = domains_.division();
-    const double bend = division.greatest_bend;
-    if (bend > 0) longest_ = std::min(longest_, std::sqrt(division.halo / bend));
-    domains_.set_bulge(bend > 0 ? bend * longest_ * longest_ / 4 : 0);
+    longest_ = std::min(parallel_.longest_window, domains_.division().straight_for);
+    domains_.set_window_end(window_begun_ + longest_);
   }
 
   // Windows.
@@ -380,6 +382,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   double longest_ = 0;       ///< s: the longest that the window may be
   double stretch_ = 0;       ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
+  bool responds_ = true;   ///< whether motions after contacts are known without a listener
   bool unstarted_ = true;  ///< no body has entered
   bool telling_ = false;
 };

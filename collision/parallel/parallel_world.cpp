@@ -102,7 +102,7 @@ void BasicParallelWorld<Motion>::archive(Archive& archive) {
   template class BasicParallelWorld<motion>;                               \
   template void BasicParallelWorld<motion>::archive(kds::detail::Writer&); \
   template void BasicParallelWorld<motion>::archive(kds::detail::Reader&);
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -32,7 +32,7 @@ class ParallelListener {
   virtual void rests_at_wall(const WallEvent&) {}
   virtual void wakes(const PairEvent&) {}
   virtual void wakes_at_wall(const WallEvent&) {}
-  virtual void passes(const PairEvent&) {}  ///< only while the scene is run as one world
+  virtual void passes(const PairEvent&) {}
 };
 
 /// A world of many bodies, divided into domains: cells of space, each with a world of its own that knows the bodies in
@@ -151,7 +151,7 @@ template <int Degree>
 using ParallelTurningWorld = BasicParallelWorld<certificates::RigidMotion<Degree>>;
 
 #define KDS_DECLARE(motion) extern template class BasicParallelWorld<motion>;
-KDS_FOR_ALL_QUADRATIC(KDS_DECLARE)
+KDS_FOR_ALL_MOTIONS(KDS_DECLARE)
 #undef KDS_DECLARE
 
 }  // namespace kds::collision

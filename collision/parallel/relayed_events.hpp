@@ -39,6 +39,8 @@ inline void relay(const DomainEvent& event, ParallelListener& listener) {
       return listener.rests(pair);
     case Kind::rests_at_wall:
       return listener.rests_at_wall(wall);
+    case Kind::passes:
+      return listener.passes(pair);
   }
 }
 

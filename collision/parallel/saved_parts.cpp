@@ -187,7 +187,7 @@ void Domains<Motion>::leave() {
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class Domains<motion>;
-KDS_FOR_EACH_QUADRATIC(KDS_INSTANTIATE)
+KDS_FOR_EACH_MOTION(KDS_INSTANTIATE)
 #undef KDS_INSTANTIATE
 
 }  // namespace kds::collision

@@ -30,7 +30,8 @@ struct DomainEvent {
     wakes,
     wakes_at_wall,
     rests,
-    rests_at_wall
+    rests_at_wall,
+    passes
   } kind;
   static constexpr DomainIndex nobody = no_domain;
   DomainIndex other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
@@ -81,7 +82,7 @@ struct DomainEvent {
     friend auto operator<=>(const Order&, const Order&) = default;
   };
   Order order() const {
-    constexpr std::array<int, 10> places{4, 0, 0, 0, 1, 1, 2, 2, 3, 3};  // by kind
+    constexpr std::array<int, 11> places{5, 0, 0, 0, 1, 1, 2, 2, 4, 4, 3};  // by kind
     const bool at_wall = is_at_wall();
     return {contact.time,
             origin(),

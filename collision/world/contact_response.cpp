@@ -1,9 +1,12 @@
 #include "collision/world/contact_response.hpp"
 
+#include "collision/motion_range.hpp"
 #include "collision/motions.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <tuple>
 
 namespace kds::collision {
@@ -19,6 +22,7 @@ ContactResponse<Motion>::ContactResponse(WorldParts<Motion>& parts, MotionUpdate
       resting_(parts.resting),
       pairs_(parts.pairs),
       self_contacts_(parts.self_contacts),
+      motions_(motions),
       calls_(calls),
       guard_(guard),
       bending_(parts.bodies, parts.options),
@@ -62,7 +66,8 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
   const bool elastic = options_.response == Response::elastic;
   bool suppressed = false;
   bool passes = false;
-  if (!elastic || bodies_[a].inverse_mass + bodies_[b].inverse_mass > 0) {
+  const bool responds = bodies_[a].inverse_mass + bodies_[b].inverse_mass > 0;
+  if (responds || !(elastic || law_)) {
     const std::uint64_t burst = count_meeting(a, b);
     suppressed = passes = burst > patience();  // No response helps: between fixed bodies that close in, say.
     counters_.rebounds_suppressed += passes;
@@ -80,6 +85,7 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
     if (passes || again || bounces_.parting(a, b, contact) < 0) let_through(a, b, contact);
   };
   try {
+    if (law_ && responds && !passes) respond_by_law(a, b, contact);
     calls_.tell([&](auto& listener, auto& world) {
       listener.contact(world, event);
       if (suppressed) listener.rebound_suppressed(world, event);
@@ -89,6 +95,65 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
     throw;
   }
   after();
+}
+
+/// What the law throws is like what a listener throws.
+template <class Motion>
+void ContactResponse<Motion>::respond_by_law(BodySlot a, BodySlot b, const Contact& contact) {
+  const Meeting meeting{contact.time, contact.point, contact.normal, meeting_body(a), meeting_body(b)};
+  Velocities after_a = meeting.a.before, after_b = meeting.b.before;
+  calls_.tell([&](auto&, auto&) {
+    law_->respond(meeting, after_a, after_b);
+    require_lawful(a, meeting.a.before, after_a);
+    require_lawful(b, meeting.b.before, after_b);
+  });
+  if (after_a != meeting.a.before) change_velocities(a, after_a);
+  if (after_b != meeting.b.before) change_velocities(b, after_b);
+  resting_.solve();
+}
+
+template <class Motion>
+MeetingBody ContactResponse<Motion>::meeting_body(BodySlot slot) const {
+  const auto& path = bodies_.path(slot);
+  const auto& body = bodies_[slot];
+  MeetingBody result{path.position(clock_.now), {path.velocity(clock_.now)}, body.inverse_mass, body.restitution,
+                     body.user_data};
+  if constexpr (turns<Motion>) result.before.angular = bodies_.motion(slot).angular_velocity;
+  return result;
+}
+
+template <class Motion>
+void ContactResponse<Motion>::require_lawful(BodySlot slot, const Velocities& before, const Velocities& after) const {
+  const auto in_range = [](const Eigen::Vector3d& v, double most) { return v.cwiseAbs().maxCoeff() <= most; };
+  if (!in_range(after.linear, largest_magnitude) || !in_range(after.angular, largest_rate)) {
+    throw std::invalid_argument("ContactLaw::respond: a velocity is not finite, or too great");
+  }
+  if (bodies_.fixed(slot) && after != before) {
+    throw std::logic_error("ContactLaw::respond: it changes the velocity of a fixed body");
+  }
+  if (!turns<Motion> && after.angular != before.angular) {
+    throw std::logic_error("ContactLaw::respond: it turns a body that keeps its orientation");
+  }
+}
+
+template <class Motion>
+void ContactResponse<Motion>::change_velocities(BodySlot slot, const Velocities& after) {
+  Motion motion = bodies_.motion(slot).restarted(clock_.now);
+  auto& path = [&]() -> auto& {
+    if constexpr (turns<Motion>) {
+      motion.angular_velocity = after.angular;
+      return motion.path;
+    } else {
+      // What it leans on may not hold it from now on.
+      for (std::size_t i = 2; i <= Motion::degree && resting_.rests(slot); ++i) {
+        motion.coefficients[i] = bodies_.free_term(slot, i, clock_.now);
+      }
+      return motion;
+    }
+  }();
+  path.coefficients[1] = after.linear;
+  ++counters_.motion_updates;
+  motions_.move_freely(slot, motion);
 }
 
 template <class Motion>

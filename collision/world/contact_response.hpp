@@ -1,6 +1,7 @@
 // What follows from contacts.
 #pragma once
 
+#include "collision/response/contact_law.hpp"
 #include "collision/world/bending_bounces.hpp"
 #include "collision/world/bounces.hpp"
 #include "collision/world/guard.hpp"
@@ -24,6 +25,9 @@ class ContactResponse {
   ContactResponse(const ContactResponse&) = delete;
   ContactResponse& operator=(const ContactResponse&) = delete;
 
+  /// In mode `callback` contacts are responded to by a law, if it is not null, which must outlive this.
+  void respond_by(const ContactLaw* law) { law_ = law; }
+
   /// The next event of the pairs; of bodies and walls; of meshes that bend, each with itself. Precondition: it is due.
   void process_pair();
   void process_wall() { bounces_.process_wall(); }
@@ -31,6 +35,10 @@ class ContactResponse {
 
  private:
   void process_contact(BodySlot a, BodySlot b, const Contact& contact);
+  void respond_by_law(BodySlot a, BodySlot b, const Contact& contact);
+  MeetingBody meeting_body(BodySlot slot) const;
+  void require_lawful(BodySlot slot, const Velocities& before, const Velocities& after) const;
+  void change_velocities(BodySlot slot, const Velocities& after);
   void let_through(BodySlot a, BodySlot b, const Contact& contact);
   std::uint64_t count_meeting(BodySlot a, BodySlot b);
   std::uint64_t patience() const { return 10 * std::uint64_t{options_.zeno.contacts}; }
@@ -43,8 +51,10 @@ class ContactResponse {
   RestingPart<Motion>& resting_;
   Pairs<Motion>& pairs_;
   SelfContacts<Motion>& self_contacts_;
+  MotionUpdates<Motion>& motions_;
   ListenerCalls<Motion>& calls_;
   const Guard& guard_;
+  const ContactLaw* law_ = nullptr;
   BendingBounces<Motion> bending_;
   std::conditional_t<turns<Motion>, TurningBounces<Motion>, Bounces<Motion>> bounces_;
 };

@@ -35,7 +35,7 @@ void require(bool right) {
 
 /// What a domain records, and what the file calls it.
 using DomainKind = DomainEvent::Kind;
-constexpr std::array<std::pair<DomainKind, EventKind>, 8> kinds_of_domains{
+constexpr std::array<std::pair<DomainKind, EventKind>, 9> kinds_of_domains{
     {{DomainKind::overlap, EventKind::overlap},
      {DomainKind::wall, EventKind::wall},
      {DomainKind::contact, EventKind::contact},
@@ -43,7 +43,8 @@ constexpr std::array<std::pair<DomainKind, EventKind>, 8> kinds_of_domains{
      {DomainKind::wakes, EventKind::wake},
      {DomainKind::wakes_at_wall, EventKind::wake_at_wall},
      {DomainKind::rests, EventKind::rest},
-     {DomainKind::rests_at_wall, EventKind::rest_at_wall}}};
+     {DomainKind::rests_at_wall, EventKind::rest_at_wall},
+     {DomainKind::passes, EventKind::pass}}};
 
 EventKind to_event_kind(DomainKind kind) {
   return std::ranges::find(kinds_of_domains, kind, &std::pair<DomainKind, EventKind>::first)->second;

@@ -16,11 +16,23 @@ namespace kds::collision::tests {
 
 using Eigen::Vector3d;
 
-enum class Kind { contact, separation, overlap, wall, pair_began, pair_ended, rebound_suppressed, rests, wakes, timer };
+enum class Kind {
+  contact,
+  separation,
+  overlap,
+  wall,
+  pair_began,
+  pair_ended,
+  rebound_suppressed,
+  rests,
+  wakes,
+  timer,
+  passes
+};
 
 inline const char* name(Kind kind) {
-  constexpr std::array names{"contact",    "separation",         "overlap", "wall",  "pair_began",
-                             "pair_ended", "rebound_suppressed", "rests",   "wakes", "timer"};
+  constexpr std::array names{"contact",    "separation",         "overlap", "wall",  "pair_began", "pair_ended",
+                             "rebound_suppressed", "rests",   "wakes", "timer", "passes"};
   return names[static_cast<std::size_t>(kind)];
 }
 

@@ -380,6 +380,13 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
   suppressed.kind = DomainEvent::Kind::rebound_suppressed;
   CHECK(merged({{event(1, DomainEvent::nobody, 1, 2), suppressed, rests}, {event(1, DomainEvent::nobody, 1, 3)}})
             .empty());
+  const auto passes = [&](std::size_t other) {  // what both owners tell
+    auto one = event(1, other, 2, 3);
+    one.kind = DomainEvent::Kind::passes;
+    one.cause = {DomainEvent::Cause::Phase::contacts, 2, 3};
+    return one;
+  };
+  CHECK(merged({{event(1, 1, 2, 3), passes(1)}, {event(1, 0, 2, 3), passes(0)}}).empty());
   const std::string first = part_path(file, 0) + ": part of events: ",
                     cannot_be = "has an event that cannot be one of ";
   const std::string disagree = first + "does not agree with the others about what has happened";

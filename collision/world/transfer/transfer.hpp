@@ -38,7 +38,7 @@ class Transfer {
 
   // transfer.cpp
   /// Whether descriptions, scripts and progress of bodies, what rests of each of them, and the pairs that overlap,
-  /// decide all later events.
+  /// decide all later events; in mode `callback` with a law.
   bool is_divisible() const;
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
   /// Those that have not entered there enter with the next step, or when their motion begins. A sensor and the body to

@@ -1,6 +1,7 @@
 // Scenes of all that is divided, run as one world and in domains, which have to agree.
 #pragma once
 
+#include "collision/parallel/body_store.hpp"
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
@@ -76,6 +77,7 @@ struct DividedLog final : ParallelLog {
   void wakes(const PairEvent& e) override { note({Kind::wakes, e.a, e.b, e.contact}); }
   void rests_at_wall(const WallEvent& e) override { note(about_wall(Kind::rests, e)); }
   void wakes_at_wall(const WallEvent& e) override { note(about_wall(Kind::wakes, e)); }
+  void passes(const PairEvent& e) override { note({Kind::passes, e.a, e.b, e.contact}); }
   void rebound_suppressed_at_wall(const WallEvent& e) override { note(about_wall(Kind::rebound_suppressed, e)); }
 };
 
@@ -127,6 +129,7 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
   const std::string what = how.str();
   WholeLog<Motion> right;
   BasicWorld<Motion> world(scene.options, &right);
+  collision::detail::EngineOf<Motion>::of(world).respond_by(manner.parallel.law);
   scene.fill(world);
   world.advance_to(scene.end_time);
 
@@ -147,6 +150,7 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
       const Snapshot saved = save(divided);
       WholeLog<Motion> later;
       BasicWorld<Motion> loaded(scene.options, &later);
+      collision::detail::EngineOf<Motion>::of(loaded).respond_by(manner.parallel.law);
       restore(saved, loaded);
       loaded.audit();
       loaded.advance_to(scene.end_time);

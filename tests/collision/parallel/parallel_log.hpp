@@ -62,6 +62,7 @@ struct WholeLog final : BasicWorldListener<Motion> {
   void wakes(W& w, const PairEvent& e) override { note(w, {Kind::wakes, e.a, e.b, e.contact}); }
   void rests_at_wall(W& w, const WallEvent& e) override { note(w, about_wall(Kind::rests, e)); }
   void wakes_at_wall(W& w, const WallEvent& e) override { note(w, about_wall(Kind::wakes, e)); }
+  void passes(W& w, const PairEvent& e) override { note(w, {Kind::passes, e.a, e.b, e.contact}); }
   void timer(W& w, TimerId timer) override { note(w, {Kind::timer, timer, 0, {.time = w.now()}}); }
 };
 

@@ -83,10 +83,11 @@ class StageMaker {
     certificates::PointMotion<Motion::degree> path;
     path.start = start;
     path.coefficients[0] = place, path.coefficients[1] = vector(-3, 3);
-    if constexpr (Motion::degree == 2) {
+    if constexpr (Motion::degree >= 2) {
       path.coefficients[2] = random_.one_in(2) ? Vector(vector(-1, 1)) : Vector(Vector::Zero());
       if (falls_) path.coefficients[2] = Vector(0, 0, -5);
     }
+    for (std::size_t i = 3; i <= Motion::degree && !random_.one_in(3); ++i) path.coefficients[i] = vector(-0.5, 0.5);
     if constexpr (turns<Motion>) {
       result.path = path;
       if (random_.one_in(2))

@@ -106,6 +106,7 @@ TEST_CASE("What follows from an event is told right after it, whichever domains 
              following(Kind::wakes, 7, 9, Phase::ends_of_rest, 7, 9),
              event(1, 0, 1),
              following(Kind::rebound_suppressed, 0, 9, Phase::contacts, 0, 1),
+             following(Kind::passes, 1, 9, Phase::contacts, 0, 1),
              following(Kind::rests, 0, 9, Phase::contacts, 0, 1)};
   std::vector<std::pair<Kind, BodyId>> right{{Kind::wakes, 4},
                                              {Kind::rests, 1},
@@ -118,6 +119,7 @@ TEST_CASE("What follows from an event is told right after it, whichever domains 
                                              {Kind::wakes, 2},
                                              {Kind::contact, 0},
                                              {Kind::rebound_suppressed, 0},
+                                             {Kind::passes, 1},
                                              {Kind::rests, 0},
                                              {Kind::contact, 4}};
   // A contact of two domains, from which something follows in both, and in one of them a contact that comes before it.

@@ -1,0 +1,111 @@
+// Bodies on cubics, quartics and quintics, in domains: the events are those of one world, bit for bit.
+#include "tests/collision/parallel/contact_laws.hpp"
+#include "tests/collision/parallel/stagings.hpp"
+#include "tests/collision/parallel/tables.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <cstddef>
+
+namespace kds::collision::test_spline_domains {
+namespace {
+
+using Eigen::Vector3d;
+using tests::compare_runs;
+using tests::Manner;
+using tests::Random;
+using tests::Seen;
+using Path = certificates::PointMotion<5>;
+
+/// A circle about the origin, as a stream of quintics.
+struct Orbit {
+  Vector3d x, y;
+  double rate;
+
+  Path piece(double from, double to) const {
+    const auto at = [this](double t, double of_x, double of_y) -> Vector3d {
+      return x * (of_x * std::cos(rate * t) + of_y * std::sin(rate * t)) +
+             y * (of_x * std::sin(rate * t) - of_y * std::cos(rate * t));
+    };
+    const double r = rate;
+    return Path::quintic(at(from, 1, 0), at(from, 0, -r), at(from, -r * r, 0), at(to, 1, 0), at(to, 0, -r),
+                         at(to, -r * r, 0), from, to);
+  }
+};
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics to quintics have the events of one world", "[parallel]",
+                       ((int Degree), Degree), 3, 4, 5) {
+  Seen seen;
+  tests::compare_stagings<certificates::PointMotion<Degree>>(1, 40, 8, seen);
+  tests::compare_stagings<certificates::PointMotion<Degree>>(1001, 4, 100, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 3000);
+  CHECK(seen.divided > 15);
+  CHECK(seen.windows > 100);
+  CHECK(seen.corrected > 20);
+}
+
+TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics and quintics that respond by a law", "[parallel]",
+                       ((int Degree), Degree), 3, 5) {
+  Seen seen;
+  tests::compare_laws<certificates::PointMotion<Degree>>(1, 24, 8, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 1000);
+  CHECK(seen.divided > 8);
+  CHECK(seen.corrected > 10);
+}
+
+TEMPLATE_TEST_CASE_SIG("Domains: what rests, of paths of degree 3 and 5, has the events of one world", "[parallel]",
+                       ((int Degree), Degree), 3, 5) {
+  Seen seen;
+  tests::compare_tables<Degree>(1, 40, 8, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 3000);
+  CHECK(seen.divided > 10);
+  CHECK(seen.windows > 40);
+  CHECK(seen.rests > 300);
+  CHECK(seen.tables > 1);
+}
+
+TEST_CASE("Domains: satellites on streams of quintics pass each other", "[parallel]") {
+  const auto fill = [](World<5>& world) {
+    Random random(8);
+    for (int i = 0; i < 150; ++i) {
+      const auto draw = [&] { return random.between(-1, 1); };
+      const double a = draw(), b = draw(), c = draw(), u = draw(), v = draw(), w = draw();
+      const double radius = random.between(4, 5);
+      Orbit orbit;
+      orbit.x = radius * Vector3d(a, b, c).normalized();
+      orbit.y = orbit.x.cross(Vector3d(u, v, w)).normalized() * radius;
+      orbit.rate = 6 / radius;
+      BodyDescription<5> satellite{.shape = Sphere{0.15}};
+      satellite.motion.clear();
+      double start = 0;
+      while (start < 3) {
+        const double end = start + random.between(0.2, 0.5);
+        satellite.motion.push_back(orbit.piece(start, end));
+        start = end;
+      }
+      world.add_body(satellite);
+    }
+  };
+  Seen seen;
+  for (const std::size_t domains : {2u, 8u}) {
+    for (const std::size_t processes : {1u, 3u}) {
+      Manner manner{.processes = processes, .polls = 3};
+      manner.parallel.threads = 2, manner.parallel.domains = domains, manner.parallel.halo = 1;
+      compare_runs<Path>({tests::with_response(Response::none), fill, 3, "satellites"}, manner, seen);
+    }
+  }
+  INFO(seen.text());
+  CHECK(seen.divided == 4);
+  CHECK(seen.whole == 0);
+  CHECK(seen.windows > 40);
+  CHECK(seen.copies > 200);
+  CHECK(seen.events > 1000);
+}
+
+}  // namespace kds::collision::test_spline_domains
