@@ -204,4 +204,25 @@ TEST_CASE("command line: a file that may not grow so far ends the run with 1") {
   CHECK(folder.file_count() == 1);
 }
 
+TEST_CASE("command line: a run in parts whose first checkpoint cannot be written leaves nothing behind") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const std::string run = "scene.json --quiet --checkpoint c --checkpoint-every 2 --events e.csv" +
+                          std::string(GENERATE("", " --events-apart"));
+  const Outcome outcome = kds_collide_in(folder, run, "ulimit -f 1; ");
+  CHECK(outcome.code == 1);
+  CHECK(outcome.err == "c: file: cannot be written: File too large; there is no checkpoint yet to go on from\n");
+  CHECK(folder.file_count() == 1);
+  CHECK(kds_collide_in(folder, run).code == 0);  // and it can be begun anew
+}
+
+TEST_CASE("command line: an answer that cannot be written ends with 1") {
+  const TemporaryFolder folder;
+  const std::string option = GENERATE("--help", "--version", "--broad-phase list");
+  INFO(option);
+  CHECK(kds_collide_in(folder, option).code == 0);
+  const Outcome full = kds_collide_in(folder, option + " > /dev/full 2> error; true");
+  CHECK(read_file(folder / "error") == "-: file: cannot be written: No space left on device\n");
+}
+
 }  // namespace test_command_line_errors
