@@ -27,7 +27,8 @@ std::string nul_problem(std::string_view text, std::size_t at) {
   const std::string_view before = text.substr(0, at);
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // rfind() + 1 is 0 where there is no line before
-  return "line " + std::to_string(line) + ", column " + std::to_string(column) + ": a NUL byte, which JSON has no place for";
+  return "line " + std::to_string(line) + ", column " + std::to_string(column) +
+         ": a NUL byte, which JSON has no place for";
 }
 
 /// Makes the document of what the parser finds, and so knows where an error is.

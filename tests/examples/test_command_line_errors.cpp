@@ -101,6 +101,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"--generate rods --table", "kds-collide: --table: is for spheres, boxes, rings, models and spinning-rings"},
       {"scene.json --table", "kds-collide: arguments: --table requires --generate"},
       {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
+      {"--generate crates --density 0.01", "kds-collide: --density: is not for crates, whose bodies have places"},
+      {"--generate sheet --density 0.2", "kds-collide: --density: is not for sheet, whose bodies have places"},
       {"--generate rings --density 2", "kds-collide: --density: must be from 1e-12 to 0.3"},
       {"--generate rings --density ''", "kds-collide: arguments: --density: \"\" is not a finite number"},
       {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
