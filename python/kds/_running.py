@@ -49,7 +49,7 @@ class Running:
 
     def step(self, limit: float = math.inf) -> bool:
         """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if
-        that is finite. What has happened, take_events() tells."""
+        that is finite, as it has to be where bodies turn, and with 'sap'. What has happened, take_events() tells."""
         return self._core.step(number("limit", limit))
 
     def take_events(self) -> np.recarray:
