@@ -100,17 +100,22 @@ void CheckpointWriter::write_bodies(const std::vector<char>& block) {
 void CheckpointWriter::commit(Checkpoint checkpoint) {
   checkpoint.turn = 1 - turn_;
   checkpoint.bodies = places();
-  if (team_.rank() == 0) {
-    Content content{checkpoint};
-    std::ostringstream text;
-    write(text, save(content));
-    OutputFile output(file_.string(), 0);
-    output.write(text.view());
-    output.commit();
-  }
-  team_.of_first(true);
-  // No file names those before any more. Of this run each process has written one, at most.
   std::error_code ignored;
+  try {
+    if (team_.rank() == 0) {
+      Content content{checkpoint};
+      std::ostringstream text;
+      write(text, save(content));
+      OutputFile output(file_.string(), 0);
+      output.write(text.view());
+      output.commit();
+    }
+    team_.of_first(true);
+  } catch (...) {  // No checkpoint names the file of bodies.
+    if (!checkpoint.bodies.empty()) std::filesystem::remove(bodies_path(file_, checkpoint.turn, team_.rank()), ignored);
+    throw;
+  }
+  // No file names those before any more. Of this run each process has written one, at most.
   if (std::exchange(is_first_, false)) {
     remove_others(checkpoint.turn, checkpoint.bodies.size());
   } else {

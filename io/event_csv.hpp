@@ -27,6 +27,7 @@ class EventCsv final : public EventSink {
   bool hears_motions() const override { return false; }
   /// How many bytes there are, and a Checksum of them; they are in the file then.
   FilePlace flush();
+  void discard() { file_.discard(); }  ///< as OutputFile does
   void close();
   void commit();
 

@@ -51,6 +51,7 @@ class EventPart final : public EventSink, public kds::collision::StepListener {
   void on_step(const kds::collision::StepEvents& events) override;
   /// Where the part is; all that is before is in the file then.
   FilePlace flush();
+  void discard() { file_.discard(); }  ///< as OutputFile does
   void close();
   void commit();
 
@@ -83,6 +84,8 @@ class EventsApart {
   EventPart& own() { return parts_.front(); }
   /// By rank, in process 0: where all parts are. What is before that is in the files then.
   std::vector<FilePlace> places();
+  /// As OutputFile does, of the parts of this process.
+  void discard();
   void close();
   void commit();
 

@@ -69,6 +69,8 @@ class OutputFile {
   void commit();
   /// How many bytes have been written; they are in the file, whatever happens to this process.
   std::uint64_t flush();
+  /// Of a run that has begun, and does not get as far as a state to go on from: what flush() told of is removed, too.
+  void discard() { stays_ = false; }
   /// Throws OutputError: what there is of a file that takes several runs to write is not what it should be.
   [[noreturn]] void refuse_to_go_on(const std::string& why) const;
 

@@ -47,7 +47,8 @@ concept KineticStructure = requires(S& structure, const S& observed, double t) {
 /// A structure that has an event before the clock (it was changed at an earlier time), or whose own clock is ahead (it
 /// was advanced by itself), would turn the order of events round: step(), advance_to() and next_time() throw
 /// std::logic_error, before anything is done. In the first case it can be brought up to the clock and the run goes on.
-/// Work that it has put off at the time of its own clock is no event: a step does it.
+/// Work that it has put off at the time of its own clock is no event: a step does it. A next time that is not a number
+/// is refused in the same way.
 ///
 /// The structures are referred to, not owned. No virtual call, no allocation: a step costs a comparison a structure
 /// on top of the structure's own work. All times are in seconds.
@@ -154,7 +155,12 @@ class Simulator {
     Next first{never, 0};
     std::size_t index = 0;
     const auto consider = [&](const auto& structure) {
-      if (const double time = structure.next_time(); time < first.time) first = {time, index, behind(structure, time)};
+      const double time = structure.next_time();
+      if (!(time >= first.time)) {
+        if (std::isnan(time)) [[unlikely]]
+          refuse(index, "says that its next event is at a time that is not a number");
+        first = {time, index, behind(structure, time)};
+      }
       ++index;
     };
     std::apply([&](const auto&... s) { (consider(s), ...); }, structures_);

@@ -100,8 +100,8 @@ std::unique_ptr<PyWorld> make_scene_world(const Scene& scene, bool gather, const
   return world;
 }
 
-void generate(const std::string& file, const std::string& kind, std::size_t bodies, double density, std::uint64_t seed,
-              double end_time) {
+void generate(const std::string& file, const std::string& kind, std::size_t bodies, std::optional<double> density,
+              std::uint64_t seed, std::optional<double> end_time) {
   GeneratorOptions options{kind, bodies, density, seed, end_time};
   const GeneratedScene scene = generate_scene(options);
   std::list<OutputFile> outputs;

@@ -79,6 +79,9 @@ void bind_shapes(py::module_& module) {
           "'sphere', 'box', 'capsule', 'hull', 'mesh', 'half-space', 'compound' or 'bending mesh'.")
       .def_property_readonly("bounding_radius", &bounding_radius,
                              "The radius of the ball about the centre that contains the shape.")
+      // It never changes, so copies may be itself.
+      .def("__copy__", [](const py::object& self) { return self; })
+      .def("__deepcopy__", [](const py::object& self, const py::dict&) { return self; })
       .def("__repr__", [](const PyShape& of) {
         std::ostringstream text;
         text << "<kds.Shape " << kind_name(of.shape) << ", bounding radius " << bounding_radius(of) << ">";

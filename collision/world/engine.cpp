@@ -212,7 +212,7 @@ double Engine<Motion>::next_time() {
   if (callers_.next_time != -never) return callers_.next_time;
   if (clock_.now == callers_.now && parts_.any_work()) return callers_.now;
   require_end<Motion>("World::next_time", callers_.looked_for_until, parts_.options.broad_phase,
-                      "a simulator with a window");
+                      "extend_horizon(), or a Simulator with a window");
   callers_.next_time = guarded_event(callers_.looked_for_until, Search::looks) ? clock_.now : never;
   return callers_.next_time;
 }

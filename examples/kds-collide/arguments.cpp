@@ -161,14 +161,17 @@ void describe(CLI::App& app, Arguments& arguments) {
                      "rings, models, spheres, boxes, spinners, spinning-rings, rods, plates, capsules, sheet or crates")
           ->type_name("KIND")
           ->group(group);
-  const auto add = [&]<class Number>(const char* name, const char* type, Number& value, const char* what) {
-    std::string preset;
-    append_number(preset, value);
-    add_number<Number>(app, name, value, what)->type_name(type)->default_str(preset)->needs(kind)->group(group);
+  const auto add = [&]<class Number>(const char* name, const char* type, auto& value, Number preset, const char* what) {
+    add_number<Number>(app, name, value, what)
+        ->type_name(type)
+        ->default_str(number_text(preset))
+        ->needs(kind)
+        ->group(group);
   };
-  add("--bodies", "N", arguments.generator.bodies, "How many");
-  add("--density", "D", arguments.generator.density, "Volume of their bounding balls over that of the domain");
-  add("--seed", "N", arguments.generator.seed, "One seed, one scene, on every machine");
+  GeneratorOptions& generator = arguments.generator;
+  add("--bodies", "N", generator.bodies, generator.bodies, "How many");
+  add("--density", "D", generator.density, default_density, "Volume of their bounding balls over that of the domain");
+  add("--seed", "N", generator.seed, generator.seed, "One seed, one scene, on every machine");
   app.add_option("--output", arguments.output, "Scene file to write, meshes beside it (default: KIND.json)")
       ->type_name("FILE")
       ->check(not_empty())

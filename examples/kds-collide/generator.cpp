@@ -116,8 +116,15 @@ void check(const GeneratorOptions& options) {
   if (options.bodies > most_bodies) throw std::invalid_argument("--bodies: must be at most 10000000");
   // With most_bodies this is 5.3e18 cells of Placement's, whose numbers are below 2^63.
   constexpr double lowest_density = 1e-12;
-  if (!(options.density >= lowest_density && options.density <= 0.3)) {
+  const double density = options.density.value_or(default_density);
+  if (!(density >= lowest_density && density <= 0.3)) {
     throw std::invalid_argument("--density: must be from 1e-12 to 0.3");
+  }
+  if (options.density && !has_density(options.kind)) {
+    throw std::invalid_argument("--density: is not for " + options.kind + ", whose bodies have places of their own");
+  }
+  if (options.end_time && options.kind == "crates") {
+    throw std::invalid_argument("end_time: is not for crates, which fall for as long as they take to come to rest");
   }
 }
 
@@ -156,6 +163,7 @@ double hump(double x) {
 
 /// A sheet on which two waves run, and balls that fly to it from above and below and bounce off.
 GeneratedScene sheet_scene(const GeneratorOptions& options) {
+  const double end_time = options.end_time.value_or(default_end_time);
   constexpr std::uint32_t squares = 24;
   constexpr int steps = 24;  // of the sheet, between keyframes
   constexpr double side = 16, height = 2;
@@ -164,7 +172,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
   scene.meshes.push_back({"sheet.obj", to_obj(mesh)});
   std::string& json = scene.json;
   json = "{\n\"scene\": 1,\n\"end_time\": ";
-  append_number(json, options.end_time);
+  append_number(json, end_time);
   json += ",\n\"response\": \"elastic\",\n\"meshes\": {\"sheet\": {\"file\": \"sheet.obj\"}},\n\"bodies\": [\n";
   json +=
       "{\"name\": \"sheet\", \"shape\": {\"mesh\": \"sheet\"}, \"fixed\": true,\n \"motion\": [{\"start\": 0, "
@@ -172,7 +180,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
   for (int step = 0; step <= steps; ++step) {
     const double part = static_cast<double>(step) / steps;
     json += "{\"time\": ";
-    append_number(json, options.end_time * part);
+    append_number(json, end_time * part);
     json += ", \"positions\": [";
     for (const Vector3d& v : mesh.vertices) {
       append_array(json, {v[0], v[1], height * (hump(v[0] / side - part) + 0.5 * hump(2 * v[1] / side + part))});
@@ -189,7 +197,7 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
     const double x = random.uniform(1, side - 1), y = random.uniform(1, side - 1);
     append_array(json, {x, y, from});
     json += ',';
-    const double way = random.uniform(4, 10) / options.end_time;
+    const double way = random.uniform(4, 10) / end_time;
     append_array(json, {0, 0, from > 0 ? -way : way});
     json += "]}]}";
   }
@@ -256,6 +264,8 @@ std::vector<std::string_view> generator_kinds() {
           "rods",  "plates", "capsules", "sheet", "crates"};
 }
 
+bool has_density(std::string_view kind) { return kind != "sheet" && kind != "crates"; }
+
 GeneratedScene generate_scene(const GeneratorOptions& options) {
   check(options);
   if (options.kind == "sheet") return sheet_scene(options);
@@ -288,11 +298,13 @@ GeneratedScene generate_scene(const GeneratorOptions& options) {
   const double largest = *std::max_element(radii.begin(), radii.end());
   // cbrt is not rounded alike everywhere; six digits of it are. One body alone may need more room than its density.
   constexpr double side_grid = 1e-6;
-  const double side = std::max(std::ceil(std::cbrt(volume / options.density) / side_grid) * side_grid, 2.125 * largest);
+  const double side =
+      std::max(std::ceil(std::cbrt(volume / options.density.value_or(default_density)) / side_grid) * side_grid,
+               2.125 * largest);
 
   std::string& json = scene.json;
   json = "{\n\"scene\": 1,\n\"end_time\": ";
-  append_number(json, options.end_time);
+  append_number(json, options.end_time.value_or(default_end_time));
   json += ",\n\"response\": \"elastic\",\n\"domain\": {\"min\": [0,0,0], \"max\": ";
   append_array(json, Vector3d::Constant(side));
   json += ", \"walls\": \"reflect\"},\n\"meshes\": {";

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -13,12 +14,18 @@ namespace kds_collide {
 /// Of bodies that turn, rad/s: about a turn in the run, in which a body goes about as far as its bounding radius.
 inline constexpr double most_turning = 6;
 
+inline constexpr double default_density = 0.01;
+inline constexpr double default_end_time = 1;  ///< s
+
 struct GeneratorOptions {
   std::string kind = "rings";  ///< see generator_kinds()
   std::size_t bodies = 1000;   ///< 1 to 10 000 000
-  double density = 0.01;       ///< volume of all bounding balls over the volume of the domain, 1e-12 to 0.3
+  /// Volume of all bounding balls over the volume of the domain, 1e-12 to 0.3: default_density unless given. None may
+  /// be given unless has_density().
+  std::optional<double> density{};
   std::uint64_t seed = 1;
-  double end_time = 1;  ///< s
+  /// s: default_end_time unless given. Crates have their own, and none may be given.
+  std::optional<double> end_time{};
   /// The name of an HDF5 file that is to hold the bodies, in columns; empty: they are in the scene.
   std::string table;
 };
@@ -40,6 +47,9 @@ struct GeneratedScene {
 /// sheet: one of 1 152 triangles on which waves run, and the bodies, balls that fly through it. crates: these, boards
 /// and rods that fall into a box and come to rest, a dozen in some 4 s.
 std::vector<std::string_view> generator_kinds();
+
+/// Whether bodies of a kind are strewn over a domain. Those of sheet and crates have places of their own.
+bool has_density(std::string_view kind);
 
 /// The scene of [Coming06] section 5 with any shape: bounding radii uniform in 0.5-1.5, speeds uniform in 0.5-1.5 times
 /// their mean in random directions, random orientations, positions uniform where bounding balls do not overlap, in a

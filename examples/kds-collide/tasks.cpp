@@ -56,9 +56,9 @@ void generate(const Arguments& arguments) {
   write(file, scene.json);
   for (OutputFile& output : outputs) output.commit();
   if (!arguments.quiet) {
-    std::fprintf(stderr, "%s: %zu %s, density %g, seed %llu\n", file.c_str(), arguments.generator.bodies,
-                 arguments.generator.kind.c_str(), arguments.generator.density,
-                 static_cast<unsigned long long>(arguments.generator.seed));
+    std::fprintf(stderr, "%s: %zu %s", file.c_str(), options.bodies, options.kind.c_str());
+    if (has_density(options.kind)) std::fprintf(stderr, ", density %g", options.density.value_or(default_density));
+    std::fprintf(stderr, ", seed %llu\n", static_cast<unsigned long long>(options.seed));
   }
 }
 

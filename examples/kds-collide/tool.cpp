@@ -28,6 +28,7 @@
 #include <functional>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <utility>
@@ -172,16 +173,27 @@ class Simulation {
     if (!arguments_.resume) checkpoint_.run = random;
     arguments_.run.checkpoint_bodies = [this](const std::vector<char>& block) { checkpoints_->write_bodies(block); };
     arguments_.run.checkpoint = [this](const kds::Snapshot& world, double time) {
-      checkpoints_->commit({.run = checkpoint_.run,
-                            .scene = checksums_of(scene_),
-                            .options = saved_options(arguments_),
-                            .time = time,
-                            .events = events_ ? std::optional(events_->flush()) : std::nullopt,
-                            .parts = parts_ ? parts_->places() : std::vector<FilePlace>(),
-                            .world = world});
+      try {
+        checkpoints_->commit({.run = checkpoint_.run,
+                              .scene = checksums_of(scene_),
+                              .options = saved_options(arguments_),
+                              .time = time,
+                              .events = events_ ? std::optional(events_->flush()) : std::nullopt,
+                              .parts = parts_ ? parts_->places() : std::vector<FilePlace>(),
+                              .world = world});
+      } catch (...) {
+        if (!saved_) discard_events();
+        throw;
+      }
       saved_ = time;
       tell_way_on_();
     };
+  }
+
+  /// There is no checkpoint with which a later run could go on with them.
+  void discard_events() {
+    if (events_) events_->discard();
+    if (parts_) parts_->discard();
   }
 
   void open_parts(std::uint64_t random) {
@@ -240,6 +252,15 @@ Failure attempt(const std::string& name, const Arguments& arguments, const Call&
   }
 }
 
+/// What --help or --version ask for, to standard output.
+void write_answer(const CLI::App& app, const CLI::Success& asked) {
+  std::ostringstream text;
+  app.exit(asked, text, text);
+  OutputFile output("-");
+  output.write(text.view());
+  output.commit();
+}
+
 /// At the end of the line, which begins with the place of what is wrong, however many processes there are.
 std::string in_process(std::size_t rank) { return " (process " + std::to_string(rank) + ")"; }
 
@@ -283,7 +304,8 @@ int run_tool(int argc, char** argv, const char* name, const Together* together) 
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& asked) {  // --help, --version
-    return is_first ? app.exit(asked) : done;
+    if (!is_first) return done;
+    return end_with(attempt(name, arguments, [&] { write_answer(app, asked); }), true);
   } catch (const CLI::ParseError& error) {
     return end_with({bad_input, std::string(name) + ": arguments: " + error.what()}, is_first);
   }

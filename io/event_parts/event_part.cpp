@@ -166,6 +166,10 @@ std::vector<FilePlace> EventsApart::places() {
   return all;
 }
 
+void EventsApart::discard() {
+  for (EventPart& part : parts_) part.discard();
+}
+
 void EventsApart::close() {
   for (EventPart& part : parts_) part.close();
 }

@@ -1,5 +1,6 @@
 #include "io/scene_file/json_document.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -21,12 +22,23 @@ std::string plain_message(const std::string& message) {
   return text;
 }
 
+/// What is wrong where the text has a NUL byte: the parser takes it for the end of the text.
+std::string nul_problem(std::string_view text, std::size_t at) {
+  const std::string_view before = text.substr(0, at);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // rfind() + 1 is 0 where there is no line before
+  return "line " + std::to_string(line) + ", column " + std::to_string(column) +
+         ": a NUL byte, which JSON has no place for";
+}
+
 /// Makes the document of what the parser finds, and so knows where an error is.
 ///
 /// json::parse with a callback would say where too, but takes quadratic time: at the end of each object it looks
 /// through the array that the object stands in.
 class DocumentBuilder final : public json::json_sax_t {
  public:
+  explicit DocumentBuilder(std::string_view text) : text_(text) {}
+
   json take() { return std::move(document_); }
 
   bool null() override { return add(nullptr); }
@@ -49,7 +61,11 @@ class DocumentBuilder final : public json::json_sax_t {
     return true;
   }
 
-  bool parse_error(std::size_t /*position*/, const std::string& /*token*/, const json::exception& error) override {
+  /// `position`: how many bytes have been read.
+  bool parse_error(std::size_t position, const std::string& /*token*/, const json::exception& error) override {
+    if (position > 0 && position <= text_.size() && text_[position - 1] == 0) {
+      throw JsonError(path(), nul_problem(text_, position - 1));
+    }
     throw JsonError(path(), plain_message(error.what()));
   }
 
@@ -97,6 +113,7 @@ class DocumentBuilder final : public json::json_sax_t {
     return text.empty() ? "document" : text;
   }
 
+  const std::string_view text_;
   json document_;
   std::vector<Level> open_;
 };
@@ -109,8 +126,10 @@ std::string path_to(const std::string& path, const std::string& key) {
 }
 
 json parse_json(std::string_view text) {
-  DocumentBuilder builder;
+  DocumentBuilder builder(text);
   json::sax_parse(text.begin(), text.end(), &builder);
+  // One that follows the document is no error to the parser, which reads no further.
+  if (const auto nul = text.find('\0'); nul != text.npos) throw JsonError("document", nul_problem(text, nul));
   return builder.take();
 }
 

@@ -1,4 +1,4 @@
-// JSON text to a document, without what nlohmann::json lets pass: a key given twice.
+// JSON text to a document, without what nlohmann::json lets pass: a key given twice, and what follows a NUL byte.
 #pragma once
 
 #include <nlohmann/json.hpp>

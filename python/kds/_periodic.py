@@ -32,6 +32,7 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
     half of each period; what does not fit is refused with ValueError.
     """
 
+    _made_of = _kds.PeriodicWorld
     _records = staticmethod(as_periodic_events)
     _turning = False
 
@@ -101,15 +102,5 @@ class PeriodicWorld(Running, MovingBodies, MotionEdits):
         which = self.bodies if bodies is None else ids("bodies", bodies)
         return self.positions(which) + self._core.ways_wrapped(which)
 
-    def __reduce__(self) -> Any:
-        return _load_world, (self._options, self.save())
-
     def __repr__(self) -> str:
         return f"<kds.PeriodicWorld: degree {self.degree}, {len(self)} bodies at {self.now} s>"
-
-
-def _load_world(options: dict[str, Any], snapshot: bytes) -> PeriodicWorld:
-    others = {key: value for key, value in options.items() if key not in ("min", "max")}
-    world = PeriodicWorld(options["min"], options["max"], **others)
-    world.load(snapshot)
-    return world

@@ -16,6 +16,8 @@ class Running:
     """How a world of any kind runs."""
 
     _core: Any
+    _made_of: Any  #: the class of the core
+    _options: dict[str, Any] | None
     _records = staticmethod(as_events)
 
     @property
@@ -47,7 +49,7 @@ class Running:
 
     def step(self, limit: float = math.inf) -> bool:
         """Processes the next event not later than `limit`. False if there is none; then the clock is at `limit`, if
-        that is finite. What has happened, take_events() tells."""
+        that is finite, as it has to be where bodies turn, and with 'sap'. What has happened, take_events() tells."""
         return self._core.step(number("limit", limit))
 
     def take_events(self) -> np.recarray:
@@ -78,6 +80,24 @@ class Running:
         changed, for bytes that are damaged or of another world."""
         if not isinstance(snapshot, bytes):
             raise ValueError(f"snapshot: must be bytes, and is {type(snapshot).__name__}")
+        self._core.load(snapshot)
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Copies and pickles have the class and the attributes of the object, and of the world what save() has."""
+        if self._options is None:
+            raise RuntimeError("World: one that Scene.world() has made cannot be pickled; save() and load() it")
+        # What Python does with objects of any class, but with a snapshot in place of the core. Attributes are in a
+        # dictionary or, of classes that have __slots__, in a second one too.
+        make, arguments, attributes, *_ = super().__reduce_ex__(2)
+        members, slots = attributes if isinstance(attributes, tuple) else (attributes, {})
+        return make, arguments, ({name: value for name, value in members.items() if name != "_core"}, slots, self.save())
+
+    def __setstate__(self, state: tuple[dict[str, Any], dict[str, Any], bytes]) -> None:
+        members, slots, snapshot = state
+        self.__dict__.update(members)
+        for name, value in slots.items():
+            setattr(self, name, value)
+        self._core = self._made_of(**members["_options"])
         self._core.load(snapshot)
 
     def write_replay(self, file: str | os.PathLike[str], title: str = "") -> None:

@@ -142,22 +142,23 @@ def generate_scene(
     file: str | os.PathLike[str],
     kind: str = "rings",
     bodies: int = 1000,
-    density: float = 0.01,
+    density: float | None = None,
     seed: int = 1,
-    end_time: float = 1.0,
+    end_time: float | None = None,
 ) -> Scene:
     """Writes a scene of the tool's generator, with its meshes beside it, and reads it.
 
     `kind`: 'rings', 'spheres', 'boxes', 'models', 'spinners', ... (`kds-collide --help` names all). `density`: the
-    volume of all bounding balls over that of the domain.
+    volume of all bounding balls over that of the domain, 0.01 unless given; not for 'sheet' and 'crates'. `end_time`:
+    1 s unless given; not for 'crates'.
     """
     name = path("file", file)
     _kds.generate_scene(
         name,
         word("kind", kind),
         whole("bodies", bodies),
-        number("density", density),
+        None if density is None else number("density", density),
         whole("seed", seed),
-        number("end_time", end_time),
+        None if end_time is None else number("end_time", end_time),
     )
     return Scene.read(name)

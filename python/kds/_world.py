@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copyreg
 import math
 from typing import Any
 
@@ -44,6 +45,8 @@ class World(Running, Bodies, Edits, Queries):
     While the world runs and calls no function (on()), other Python threads go on; but one that asks or changes this
     world meanwhile gets RuntimeError.
     """
+
+    _made_of = _kds.World
 
     def __init__(
         self,
@@ -124,7 +127,10 @@ class World(Running, Bodies, Edits, Queries):
 
     @property
     def next_time(self) -> float:
-        """The time of the next event, s; inf if none will come. Now, if consequences of a change are not known yet."""
+        """The time of the next event, s; inf if none will come. Now, if consequences of a change are not known yet.
+
+        ValueError where bodies turn, or are found by 'sap': such a world looks ahead as far as advance_to() or
+        step(limit) says, and not for ever."""
         return self._core.next_time()
 
     def set_timer(self, t: float) -> int:
@@ -135,11 +141,6 @@ class World(Running, Bodies, Edits, Queries):
     def cancel_timer(self, timer: int) -> bool:
         """False if there is no such timer any more, or never was."""
         return self._core.cancel_timer(whole("timer", timer))
-
-    def __reduce__(self) -> Any:
-        if self._options is None:
-            raise RuntimeError("World: one that Scene.world() has made cannot be pickled; save() and load() it")
-        return _load_world, (self._options, self.save())
 
     @property
     def broad_phase(self) -> str:
@@ -159,11 +160,18 @@ class World(Running, Bodies, Edits, Queries):
         return f"<kds.World: {kind}degree {self._degree}, {len(self)} bodies at {self.now} s>"
 
 
-def _load_world(options: dict[str, Any], snapshot: bytes) -> World:
-    world = World(
-        options["degree"],
-        options["turning"],
-        **{key: value for key, value in options.items() if key not in ("degree", "turning")},
-    )
+
+def _with_shape(shape: _kds.Shape) -> Any:
+    """How a shape is pickled: as a world of one body."""
+    world = World()
+    world.add_body(shape, (0, 0, 0), fixed=True)
+    return _shape_of, (world.save(),)
+
+
+def _shape_of(snapshot: bytes) -> _kds.Shape:
+    world = World()
     world.load(snapshot)
-    return world
+    return world.shape(0)
+
+
+copyreg.pickle(_kds.Shape, _with_shape)

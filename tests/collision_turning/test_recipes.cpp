@@ -1,6 +1,7 @@
 // The code of docs/recipes.md with bodies that turn: what is quoted there stands here.
 #include "collision/response/mass_properties.hpp"
 #include "collision/shapes/compound.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 
 #include <catch2/catch.hpp>
@@ -34,6 +35,29 @@ TEST_CASE("recipe: a body that turns") {
   world.advance_to(10);
   CHECK(world.motion(die).path.position(10)[2] == Approx(0.25).margin(1e-6));
   CHECK(world.motion(die).angular_velocity == Vector3d(0, 0, 0));
+}
+
+TEST_CASE("recipe: a door on a hinge") {
+  TurningWorld<2> world({.response = Response::elastic});
+  std::vector<Vector3d> corners;  // about the hinge, as a body turns about its origin
+  for (const double x : {0.0, 1.0}) {
+    for (const double y : {-0.03125, 0.03125}) {
+      for (const double z : {0.0, 2.0}) corners.emplace_back(x, y, z);
+    }
+  }
+  const auto turning = [](double from, double rate, double start) {
+    return Turning{.path = Parabola::line({0, 0, 0}, {0, 0, 0}, start),
+                   .orientation = Eigen::Quaterniond(Eigen::AngleAxisd(from, Vector3d::UnitZ())),
+                   .angular_velocity = {0, 0, rate}};
+  };
+  const BodyId door = world.add_body({.shape = convex_hull(corners),
+                                      .motion = {turning(0, 0, 0), turning(0, 1.5, 1), turning(1.5, 0, 2)},
+                                      .fixed = true});  // shut until 1 s, opens, and stays open from 2 s on
+  const BodyId ball =
+      world.add_body({.shape = Sphere{0.25}, .motion = {Turning{Parabola::line({0.75, 0.5, 1}, {0, 0, 0})}}});
+  world.advance_to(3);
+  CHECK(world.motion(door).angular_velocity == Vector3d(0, 0, 0));
+  CHECK(world.motion(ball).path.velocity(3)[1] > 1);  // pushed away by the door
 }
 
 TEST_CASE("recipe: a body of several parts that turns") {

@@ -262,7 +262,7 @@ TEST_CASE("windows, single steps, looks ahead and snapshots change no bit of how
   Turning<1> windows(options, &log);
   begin(windows);
   windows.advance_to(0);
-  CHECK_THROWS_WITH(windows.next_time(), Catch::Contains("so it needs a simulator with a window"));
+  CHECK_THROWS_WITH(windows.next_time(), Catch::Contains("so it needs extend_horizon(), or a Simulator with a window"));
   windows.extend_horizon(0, 0.1);
   while (windows.next_time() <= 1.5 || windows.next_time() == never) {
     if (windows.next_time() == never) {

@@ -101,6 +101,8 @@ TEST_CASE("command line: bad arguments and bad scenes end with 2 and one line, a
       {"--generate rods --table", "kds-collide: --table: is for spheres, boxes, rings, models and spinning-rings"},
       {"scene.json --table", "kds-collide: arguments: --table requires --generate"},
       {"--generate cubes", "kds-collide: --generate: there is no \"cubes\""},
+      {"--generate crates --density 0.01", "kds-collide: --density: is not for crates, whose bodies have places"},
+      {"--generate sheet --density 0.2", "kds-collide: --density: is not for sheet, whose bodies have places"},
       {"--generate rings --density 2", "kds-collide: --density: must be from 1e-12 to 0.3"},
       {"--generate rings --density ''", "kds-collide: arguments: --density: \"\" is not a finite number"},
       {"--generate rings --bodies 0", "kds-collide: --bodies: must be > 0"},
@@ -202,6 +204,27 @@ TEST_CASE("command line: a file that may not grow so far ends the run with 1") {
   CHECK(outcome.code == 1);
   CHECK(outcome.err == events + ": file: cannot be written: File too large\n");
   CHECK(folder.file_count() == 1);
+}
+
+TEST_CASE("command line: a run in parts whose first checkpoint cannot be written leaves nothing behind") {
+  const TemporaryFolder folder;
+  folder.write("scene.json", head_on);
+  const std::string run = "scene.json --quiet --checkpoint c --checkpoint-every 2 --events e.csv" +
+                          std::string(GENERATE("", " --events-apart"));
+  const Outcome outcome = kds_collide_in(folder, run, "ulimit -f 1; ");
+  CHECK(outcome.code == 1);
+  CHECK(outcome.err == "c: file: cannot be written: File too large; there is no checkpoint yet to go on from\n");
+  CHECK(folder.file_count() == 1);
+  CHECK(kds_collide_in(folder, run).code == 0);  // and it can be begun anew
+}
+
+TEST_CASE("command line: an answer that cannot be written ends with 1") {
+  const TemporaryFolder folder;
+  const std::string option = GENERATE("--help", "--version", "--broad-phase list");
+  INFO(option);
+  CHECK(kds_collide_in(folder, option).code == 0);
+  const Outcome full = kds_collide_in(folder, option + " > /dev/full 2> error; true");
+  CHECK(read_file(folder / "error") == "-: file: cannot be written: No space left on device\n");
 }
 
 }  // namespace test_command_line_errors

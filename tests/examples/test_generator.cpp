@@ -235,6 +235,11 @@ TEST_CASE("generator: options out of range are refused") {
   for (const double density : {0.0, 1e-100, 0.9, static_cast<double>(NAN)}) {
     CHECK(error({.density = density}) == "--density: must be from 1e-12 to 0.3");
   }
+  for (const std::string kind : {"sheet", "crates"}) {
+    CHECK(error({.kind = kind, .density = 0.01}) ==
+          "--density: is not for " + kind + ", whose bodies have places of their own");
+  }
+  CHECK(error({.kind = "crates", .end_time = 1}).starts_with("end_time: is not for crates"));
 }
 
 }  // namespace test_generator

@@ -301,6 +301,17 @@ TEST_CASE("checkpoint: a process that ends while one is written leaves the one b
   CHECK(std::filesystem::exists(file.string() + ".b.9"));
 }
 
+TEST_CASE("checkpoint: one that cannot be written leaves no file of bodies") {
+  const TemporaryFolder folder;
+  const auto file = folder / "run.state";
+  kds::collision::Team alone(nullptr);
+  CheckpointWriter writer(file, alone);
+  write_parts(writer, 0, 1, "x");
+  std::filesystem::create_directory(file);
+  CHECK_THROWS_WITH(writer.commit({.run = 8}), file.string() + ": file: cannot be written: Is a directory");
+  CHECK(files_in(folder) == Blocks{"run.state"});
+}
+
 TEST_CASE(
     "checkpoint: files of bodies that are missing, cut, damaged or of another checkpoint are refused, and named") {
   const TemporaryFolder folder;

@@ -283,6 +283,20 @@ TEST_CASE("scene reader: a file that cannot be read") {
   CHECK_THAT(error("empty.json"), Catch::Contains("empty.json: document: line 1, column 1: syntax error"));
 }
 
+TEST_CASE("scene reader: a NUL byte is named where it is, also after the document") {
+  using namespace std::string_literals;
+  const auto error = [](const std::string& text) { return error_of(text, "scene.json"); };
+  const std::string whole = R"({"scene": 1, "end_time": 1, "bodies": []})";
+  REQUIRE(parse_scene(whole, "scene.json").bodies.empty());
+  const std::string nul = "a NUL byte, which JSON has no place for";
+  CHECK(error(whole + "\0"s) == "scene.json: document: line 1, column 42: " + nul);
+  CHECK(error(whole + "\n\0{"s) == "scene.json: document: line 2, column 1: " + nul);
+  CHECK(error("\0"s + whole) == "scene.json: document: line 1, column 1: " + nul);
+  CHECK(error("{\n\"scene\": \0 1}"s) == "scene.json: scene: line 2, column 10: " + nul);
+  CHECK(error("{\"bodies\": [{\"name\": \"b\0\"}]}"s) == "scene.json: bodies[0].name: line 1, column 24: " + nul);
+  CHECK(error("{\"scene\": 1,").find("unexpected end of input") != std::string::npos);
+}
+
 TEST_CASE("scene reader: an error is one line, whatever the keys and names hold") {
   const std::string error = error_of("{\"a\\nb\": 1, \"scene\": 1}", "sce\nne.json");
   CHECK(error == "sce ne.json: a b: unknown key");

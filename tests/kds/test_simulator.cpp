@@ -14,6 +14,7 @@
 #include <ostream>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -192,6 +193,28 @@ TEST_CASE("the clock does not go back, nor to where there is no time", "[simulat
   simulator.set_clock(0.75);
   CHECK(simulator.now() == 0.75);
   CHECK_THROWS_AS(simulator.advance_to(0.5), std::invalid_argument);
+}
+
+TEST_CASE("a next time that is not a number is refused, whichever structure has it", "[simulator]") {
+  Log log;
+  Script one{'a', log}, other{'b', log};
+  const bool of_first = GENERATE(true, false);
+  Simulator simulator(0, one, other);
+  one.events = {{1, 0}}, other.events = {{2, 0}};
+  simulator.advance_to(1.5);
+  Script& wrong = of_first ? one : other;
+  wrong.events = {{std::nan(""), 7}};
+  const std::string what =
+      "Simulator: the clock stands at 1.500000, and structure " + std::string(of_first ? "0" : "1") +
+      " (in the order of the arguments, from 0) says that its next event is at a time that is not a "
+      "number";
+  CHECK_THROWS_WITH(simulator.next_time(), what);
+  CHECK_THROWS_WITH(simulator.step(), what);
+  CHECK_THROWS_WITH(simulator.advance_to(3), what);
+  CHECK(log.size() == 1);
+  wrong.events.clear();
+  simulator.advance_to(3);
+  CHECK(log.size() == (of_first ? 2 : 1));
 }
 
 TEST_CASE("a window must be longer than nothing", "[simulator]") {

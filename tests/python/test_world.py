@@ -330,6 +330,20 @@ class Callbacks(unittest.TestCase):
         self.assertIsNone(watched())
 
 
+class Slotted:
+    __slots__ = ("slotted",)
+
+
+class KeptWorld(Slotted, kds.World):
+    def __init__(self, name, **options):
+        super().__init__(response="elastic", **options)
+        self.name = name
+
+
+class KeptPeriodicWorld(Slotted, kds.PeriodicWorld):
+    pass
+
+
 class State(unittest.TestCase):
     def test_snapshots(self):
         for turning in (False, True):
@@ -350,6 +364,37 @@ class State(unittest.TestCase):
                     with self.assertRaisesRegex(RuntimeError, "snapshot"):
                         world.load(damaged)
                 self.assertEqual(world.advance_to(2).tobytes(), later.tobytes())
+
+    def test_copies_have_the_class_and_the_attributes(self):
+        periodic = KeptPeriodicWorld((0, 0, 0), (9, 9, 9))
+        for world in (KeptWorld("a name"), KeptWorld("turning", turning=True), KeptWorld("domains", domains=2), periodic):
+            world.scores, world.itself, world.ball = {"a": [1]}, world, kds.sphere(0.5)
+            world.add_bodies(world.ball, [[1, 1, 1], [5, 1, 1]], [[1, 0, 0], [0, 0, 0]])
+            world.slotted = 17
+            copies = [copy.copy(world), copy.deepcopy(world)]
+            copies += [pickle.loads(pickle.dumps(world, protocol)) for protocol in range(pickle.HIGHEST_PROTOCOL + 1)]
+            events = world.advance_to(4)
+            self.assertEqual(len(events), 1)
+            for other in copies:
+                self.assertIs(type(other), type(world))
+                self.assertEqual((other.scores, other.slotted, other.now), ({"a": [1]}, 17, 0))
+                self.assertIs(other.itself, world if other is copies[0] else other)
+                self.assertEqual(other.advance_to(4).tobytes(), events.tobytes())
+            self.assertIs(copies[0].scores, world.scores)
+            self.assertIsNot(copies[1].scores, world.scores)
+
+    def test_shapes_are_copied_and_pickled(self):
+        corners, triangles = np.eye(4, 3) * 2, [[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]]
+        shapes = [kds.sphere(0.3), kds.box((1, 2, 3)), kds.capsule(0.1, 2), kds.hull(corners), kds.half_space((0, 0, 1), 2),
+                  kds.mesh(corners, triangles, 0.7), kds.heightfield([[0, 1], [1, 0]], (1, 2)),
+                  kds.compound([kds.box((1, 1, 1)), kds.hull(corners)], [[0, 0, 0], [3, 0, 0]], (1, 0, 0, 0)),
+                  kds.bending_mesh([0, 2], [corners, 2 * corners], triangles)]  # fmt: skip
+        for shape in shapes:
+            self.assertIs(copy.deepcopy([shape])[0], shape)
+            other = pickle.loads(pickle.dumps(shape))
+            self.assertEqual((other.kind, other.bounding_radius), (shape.kind, shape.bounding_radius))
+            self.assertEqual(pickle.dumps(other), pickle.dumps(shape))
+            self.assertEqual(*(kds.shape_distance(each, kds.sphere(1), (4, 5, 6)).distance for each in (shape, other)))
 
     def test_steps(self):
         world = kds.World()

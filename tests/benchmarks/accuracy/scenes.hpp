@@ -42,7 +42,7 @@ Scene<Degree> generated(const std::string& name, const std::string& what,
   for (const auto& mesh : text.meshes) std::ofstream(folder / mesh.name) << mesh.text;
   const auto read = kds::io::parse_scene(text.json, folder / "scene.json");
   std::filesystem::remove_all(folder);
-  Scene<Degree> scene{name, what, {}, options.end_time};
+  Scene<Degree> scene{name, what, {}, options.end_time.value_or(kds_collide::default_end_time)};
   for (const auto& body : read.bodies) {
     BodyDescription<Degree> description;
     description.shape = body.shape;
