@@ -36,9 +36,9 @@ struct Meeting {
 /// The response to contacts in a ParallelWorld of mode `callback` (ParallelOptions::law). A pair that it leaves
 /// approaching passes through until it has separated.
 ///
-/// Laws of a law, on which it rests that the log does not depend on how a scene is divided:
-/// 1. What respond() does depends on the meeting alone. It may be called more than once for a contact, and for contacts
-///    of copies that prove wrong, which never happen.
+/// So that the log does not depend on how a scene is divided, an implementation keeps to two rules:
+/// 1. What respond() does depends on the meeting alone. It may be called more than once for a contact, and for a contact
+///    that proves later not to happen, since a domain did not know all bodies nearby.
 /// 2. It has no effect but on the velocities, and may be called by several threads at once.
 class ContactLaw {
  public:
