@@ -17,7 +17,7 @@ namespace kds::collision {
 //
 // Mode `resolved`, bodies that overlap by rounding: they are in contact if they approach at some point that they share,
 // faster than by roundings. If they do not, they are looked at again when they have parted and meet, or when their
-// overlap has grown by more than roundings.
+// overlap has grown by more than roundings, and by twice as much each time.
 
 /// In what time two bodies turn by some radians, s: how far exact tests look at a time. Finite.
 template <int Degree>

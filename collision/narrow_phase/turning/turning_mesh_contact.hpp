@@ -28,7 +28,7 @@ namespace kds::collision {
 ///
 /// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than by
 /// roundings. Otherwise it is passed over until it has parted and meets again, or until its overlap has grown by more
-/// than roundings, which is decided in doubles.
+/// than roundings, which is decided in doubles; where they do not tell, for a short time, and then twice the time each.
 template <int Degree>
 struct TurningMeshContact {
   using Motion = certificates::RigidMotion<Degree>;
