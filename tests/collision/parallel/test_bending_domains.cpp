@@ -29,8 +29,9 @@ BodyDescription<2> trampoline() {
     for (Vector3d& p : positions) p[2] = (static_cast<int>(p[0] + 9) / 3 + i) % 3 == 0 ? 0.5 : 0;
     keyframes.push_back({0.25 * i, positions});
   }
-  auto body = tests::fixed_body<2>(BendingMesh{std::make_shared<const MeshScript>(std::move(keyframes), flat.triangles)},
-                                   tests::motion<2>({7, 7, 0}));
+  auto body =
+      tests::fixed_body<2>(BendingMesh{std::make_shared<const MeshScript>(std::move(keyframes), flat.triangles)},
+                           tests::motion<2>({7, 7, 0}));
   body.restitution = 0.9;
   return body;
 }
