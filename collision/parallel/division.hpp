@@ -61,12 +61,12 @@ struct Division {
   static constexpr DomainIndex nobody = no_domain;
 
   Partition partition;
-  double halo = 0;                ///< how far outside a cell its domain knows bodies
-  double greatest_radius = 0;     ///< of bodies that have owners
-  double greatest_speed = 0;      ///< of these, along an axis, at the beginnings of motions
-  double straight_for = never;    ///< s: so long, about, their paths stay nearer than a halo to straight lines
-  double largest_guided = never;  ///< greatest radius of bodies that have owners though no other body moves them
-  double window_end = never;      ///< s: the window that begins next is over by then
+  double halo = 0;                       ///< how far outside a cell its domain knows bodies
+  double greatest_radius = 0;            ///< of bodies that have owners
+  double greatest_speed = 0;             ///< of these, along an axis, at the beginnings of motions
+  double straight_for = never;           ///< s: so long, about, their paths stay nearer than a halo to straight lines
+  double largest_guided = never;         ///< greatest radius of bodies that have owners though no other body moves them
+  double window_end = never;             ///< s: the window that begins next is over by then
   const SlotsByNumber* slots = nullptr;  ///< of the bodies that are stored; null where they are numbers
   DomainSets sets{partition.size()};
   std::vector<DomainIndex> owner{};         ///< by slot
@@ -116,9 +116,12 @@ double bulge_of(const certificates::PointMotion<Degree>& path, double from, doub
   if constexpr (Degree == 2) half_acceleration = path.coefficients[2].cwiseAbs().maxCoeff();
   if constexpr (Degree >= 3) {
     certificates::PointMotion<Degree - 2> halved{.start = path.start};
+    bool bends = false;
     for (std::size_t i = 2; i <= Degree; ++i) {
       halved.coefficients[i - 2] = path.coefficients[i] * static_cast<double>(i * (i - 1) / 2);
+      bends = bends || !path.coefficients[i].isZero(0);
     }
+    if (!bends) return 0;
     const StaticBox swept = swept_place(halved, from, to);
     half_acceleration = swept.min.abs().max(swept.max.abs()).maxCoeff();
   }
@@ -250,7 +253,8 @@ std::optional<Division> divide(const Bodies<Motion>& bodies, const Scripts<Motio
   const auto note = [&](const auto& path, double t) {
     speed = std::max(speed, path.velocity(t).cwiseAbs().maxCoeff());
     const auto local = degree >= 3 ? path.restarted(t) : path;
-    for (std::size_t i = 2; i <= degree; ++i) terms[i] = std::max(terms[i], local.coefficients[i].cwiseAbs().maxCoeff());
+    for (std::size_t i = 2; i <= degree; ++i)
+      terms[i] = std::max(terms[i], local.coefficients[i].cwiseAbs().maxCoeff());
   };
   const double largest_guided = detail::largest_guided(bodies, scripts, slots, team);
   for (const BodySlot slot : slots) {

@@ -150,6 +150,9 @@ void Domain<Motion>::run(double until) {
     report_.divisible = false;
   } catch (const std::runtime_error&) {
     report_.divisible = false;  // Perhaps of a copy that has gone wrong. If not, the scene as one world throws it too.
+  } catch (...) {
+    if (!by_law_) throw;
+    report_.divisible = false;  // The same of what a law throws.
   }
   if (!report_.divisible) return;
   for (const BodySlot slot : engine_.transfer().take_solved()) mark_changed(slot);

@@ -30,8 +30,13 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
   if (counted < report_.told.size() && (!shared || of_a == index_)) ++report_.told[counted];
   if (!logs_) return;
   const DomainIndex other = of_a == index_ ? of_b : of_a;
-  DomainEvent recorded{kind,          shared ? other : DomainEvent::nobody, key(event.a), key(event.b),
-                       event.contact, event.user_data_a,                     event.user_data_b};
+  DomainEvent recorded{kind,
+                       shared ? other : DomainEvent::nobody,
+                       key(event.a),
+                       key(event.b),
+                       event.contact,
+                       event.user_data_a,
+                       event.user_data_b};
   if (recorded.follows()) recorded.cause = cause_at(event.contact.time);
   put(recorded);
 }
@@ -150,8 +155,8 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
   changed(slot, event.contact.time);
 }
 
-/// A law leaves two bodies approaching. (Where nothing could keep them apart, what rests decides it, of more bodies than
-/// these.)
+/// A law leaves two bodies approaching. (Where nothing could keep them apart, what rests decides it, of more bodies
+/// than these.)
 template <class Motion>
 void Domain<Motion>::passes(World&, const PairEvent& event) {
   if (!by_law_) {

@@ -43,7 +43,8 @@ class ParallelListener {
 ///
 /// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; some lean on each other (what
 /// lies on fixed bodies or leans on walls is divided, docs/parallel.md), or bodies that turn come to rest; meshes that
-/// bend; box functions; response `callback`; reports of pairs or of pieces. What this costs is in docs/parallel.md.
+/// may meet themselves; box functions; response `callback` without ParallelOptions::law; reports of pairs or of pieces.
+/// What this costs is in docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own
@@ -142,7 +143,8 @@ class BasicParallelWorld final {
   std::unique_ptr<Runner> runner_;
 };
 
-/// Of bodies that keep their orientation, on straight paths (degree 1) or parabolas (degree 2).
+/// Of bodies that keep their orientation, on straight paths (degree 1) or parabolas (degree 2), or, in
+/// kds::collision_splines, on paths of degree 3 to 5.
 template <int Degree>
 using ParallelWorld = BasicParallelWorld<certificates::PointMotion<Degree>>;
 

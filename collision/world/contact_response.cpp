@@ -116,8 +116,8 @@ template <class Motion>
 MeetingBody ContactResponse<Motion>::meeting_body(BodySlot slot) const {
   const auto& path = bodies_.path(slot);
   const auto& body = bodies_[slot];
-  MeetingBody result{path.position(clock_.now), {path.velocity(clock_.now)}, body.inverse_mass, body.restitution,
-                     body.user_data};
+  MeetingBody result{
+      path.position(clock_.now), {path.velocity(clock_.now)}, body.inverse_mass, body.restitution, body.user_data};
   if constexpr (turns<Motion>) result.before.angular = bodies_.motion(slot).angular_velocity;
   return result;
 }
@@ -150,7 +150,8 @@ void ContactResponse<Motion>::change_velocities(BodySlot slot, const Velocities&
       }
       return motion;
     }
-  }();
+  }
+  ();
   path.coefficients[1] = after.linear;
   ++counters_.motion_updates;
   motions_.move_freely(slot, motion);

@@ -380,13 +380,10 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
   suppressed.kind = DomainEvent::Kind::rebound_suppressed;
   CHECK(merged({{event(1, DomainEvent::nobody, 1, 2), suppressed, rests}, {event(1, DomainEvent::nobody, 1, 3)}})
             .empty());
-  const auto passes = [&](std::size_t other) {  // what both owners tell
-    auto one = event(1, other, 2, 3);
-    one.kind = DomainEvent::Kind::passes;
-    one.cause = {DomainEvent::Cause::Phase::contacts, 2, 3};
-    return one;
-  };
-  CHECK(merged({{event(1, 1, 2, 3), passes(1)}, {event(1, 0, 2, 3), passes(0)}}).empty());
+  auto passes = event(1, 1, 2, 3), told_by_other = event(1, 0, 2, 3);
+  for (auto* one : {&passes, &told_by_other})
+    one->kind = DomainEvent::Kind::passes, one->cause = {rests.cause.phase, 2, 3};
+  CHECK(merged({{event(1, 1, 2, 3), passes}, {event(1, 0, 2, 3), told_by_other}}).empty());
   const std::string first = part_path(file, 0) + ": part of events: ",
                     cannot_be = "has an event that cannot be one of ";
   const std::string disagree = first + "does not agree with the others about what has happened";

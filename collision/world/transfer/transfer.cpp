@@ -12,8 +12,10 @@ template <class Motion>
 bool Transfer<Motion>::is_divisible() const {
   const bool told_of_work = parts_.options.report_pairs || parts_.options.report_pieces;
   if (!guard_.whole() || told_of_work) return false;
-  if (parts_.volumes.any_from_callers() || parts_.volumes.end_of_bent() > 0 || parts_.self_contacts.next_time() < never)
-    return false;
+  if (parts_.volumes.any_from_callers()) return false;
+  for (BodySlot slot = 0; slot < parts_.bodies.slots(); ++slot) {
+    if (parts_.bodies.alive(slot) && parts_.bodies[slot].self_contacts) return false;
+  }
   return parts_.resting.divisible() && parts_.reports.empty();
 }
 

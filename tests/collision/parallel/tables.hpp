@@ -93,9 +93,6 @@ class TableMaker {
     Vector force(0, 0, -5);
     if (sideways_) force.x() = number(-2, 2);
     body.motion = {motion<Degree>(place + Vector(0, 0, size + height), velocity, force)};
-    if constexpr (Degree >= 3) {
-      if (random_.one_in(6)) body.motion[0].coefficients[3] = Vector(number(-1, 1), 0, number(-1, 2));
-    }
     if (body.fixed) body.motion[0] = motion<Degree>(place + Vector(0, 0, size));
     body.restitution = random_.one_in(12) ? 0 : rebound_;
     if (random_.one_in(6)) body.mass = random_.between(0.2, 5);
@@ -134,9 +131,6 @@ class TableMaker {
       start += number(0.5, 1);
       const Vector velocity(0, 0, number(-0.5, 0.5)), force(0, 0, random_.one_in(4) ? 0.25 : 0);
       lift.motion.push_back(motion<Degree>(lift.motion.back().position(start), velocity, force, start));
-      if constexpr (Degree >= 3) {
-        if (random_.one_in(3)) lift.motion.back().coefficients[3] = Vector(0, 0, number(-0.5, 0.5));
-      }
     }
     bodies.push_back(lift);
   }

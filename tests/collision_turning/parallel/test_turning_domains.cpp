@@ -1,4 +1,5 @@
 // Bodies that turn, in domains: the events are those of one world, bit for bit.
+#include "tests/collision/parallel/bending_stagings.hpp"
 #include "tests/collision/parallel/contact_laws.hpp"
 #include "tests/collision/parallel/stagings.hpp"
 
@@ -39,6 +40,16 @@ TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn, and respond by a law, have 
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 8);
+  CHECK(seen.corrected > 5);
+}
+
+TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn, and meshes that bend, have the events of one world", "[parallel]",
+                       ((int Degree), Degree), 1, 2) {
+  Seen seen;
+  tests::compare_bending_stagings<RigidMotion<Degree>>(1, 20, 6, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 500);
+  CHECK(seen.divided > 5);
   CHECK(seen.corrected > 5);
 }
 
