@@ -123,9 +123,6 @@ void check(const GeneratorOptions& options) {
   if (options.density && !has_density(options.kind)) {
     throw std::invalid_argument("--density: is not for " + options.kind + ", whose bodies have places of their own");
   }
-  if (options.end_time && options.kind == "crates") {
-    throw std::invalid_argument("end_time: is not for crates, which fall for as long as they take to come to rest");
-  }
 }
 
 Vector3d random_spin(Random& random) {
@@ -209,13 +206,13 @@ GeneratedScene sheet_scene(const GeneratorOptions& options) {
 /// domain are not.
 GeneratedScene crates_scene(const GeneratorOptions& options) {
   constexpr std::size_t a_side = 3;  // of a layer of bodies
-  constexpr double end_time = 8;     // s, in which a dozen come to rest
+  constexpr double all_rest = 8;     // s, in which a dozen come to rest
   constexpr double spacing = 1.25, half_width = 2.25, thickness = 0.25, gravity = 9.81;
   const double height = 2 + static_cast<double>(options.bodies / (a_side * a_side));
   GeneratedScene scene;
   std::string& json = scene.json;
   json = "{\n\"scene\": 1,\n\"end_time\": ";
-  append_number(json, end_time);
+  append_number(json, options.end_time.value_or(all_rest));
   json += ",\n\"response\": \"elastic\", \"restitution\": 0.3, \"friction\": 0.5,\n\"bodies\": [\n";
   const auto add = [&](const std::string& name, const Vector3d& half) {
     json += "{\"name\": \"" + name + "\", \"shape\": {\"box\": {\"half_extents\": ";

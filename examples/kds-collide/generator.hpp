@@ -24,7 +24,7 @@ struct GeneratorOptions {
   /// be given unless has_density().
   std::optional<double> density{};
   std::uint64_t seed = 1;
-  /// s: default_end_time unless given. Crates have their own, and none may be given.
+  /// s: default_end_time unless given, and 8 of crates.
   std::optional<double> end_time{};
   /// The name of an HDF5 file that is to hold the bodies, in columns; empty: they are in the scene.
   std::string table;

@@ -150,7 +150,7 @@ def generate_scene(
 
     `kind`: 'rings', 'spheres', 'boxes', 'models', 'spinners', ... (`kds-collide --help` names all). `density`: the
     volume of all bounding balls over that of the domain, 0.01 unless given; not for 'sheet' and 'crates'. `end_time`:
-    1 s unless given; not for 'crates'.
+    1 s unless given, of crates 8 s.
     """
     name = path("file", file)
     _kds.generate_scene(
