@@ -147,8 +147,8 @@ class BasicWorld final {
   void advance_to(double t);
 
   /// Processes the next event not later than `limit`, if there is one. False if there is none; then the clock is at
-  /// `limit`, or at the last event if that is not finite, as it must be where bodies turn, which may come near each other
-  /// for ever, and for `sap`, whose frames never end. Throws as advance_to() does, except for a time in the past.
+  /// `limit`, or at the last event if that is not finite, as it has to be where bodies turn, which may come near each
+  /// other for ever, and for `sap`, whose frames never end. Throws as advance_to() does, but for a time in the past.
   bool step(double limit = never);
 
   /// Processes events up to t until this much time of the wall clock has passed, but at least one, or a small part of
