@@ -42,6 +42,14 @@ if(NOT output MATCHES "the balls meet at t = 1 ")
   message(FATAL_ERROR "two_balls says: ${output}")
 endif()
 
+# A library that is always there may be named as a component; what is none is named in the error.
+run(${configure} -B "${FOLDER}/build_named" -DCOMPONENT=collision)
+execute_process(COMMAND ${configure} -B "${FOLDER}/build_misnamed" -DCOMPONENT=colission OUTPUT_QUIET
+  ERROR_VARIABLE errors RESULT_VARIABLE result)
+if(result EQUAL 0 OR NOT errors MATCHES "has no component colission")
+  message(FATAL_ERROR "A component that is none: ${result}\n${errors}")
+endif()
+
 run(${configure} -B "${FOLDER}/build_io" -DCOMPONENT=io)
 run("${CMAKE_COMMAND}" --build "${FOLDER}/build_io" --target scene_run --target world_answers)
 run("${FOLDER}/build_io/scene_run")
