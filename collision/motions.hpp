@@ -29,8 +29,8 @@
 #define KDS_FOR_EACH_MOTION(instantiate) KDS_FOR_EACH_PATH(instantiate)
 #endif
 
-// KDS_FOR_EACH_QUADRATIC(instantiate): the same for those whose paths are of degree 2 at most: worlds of these can be
-// divided (parallel/parallel_world.hpp), and hold meshes that bend.
+// KDS_FOR_EACH_QUADRATIC(instantiate): the same for those whose paths are of degree 2 at most: worlds of these can
+// hold meshes that bend.
 #if defined(KDS_SPLINE_DEGREES)
 #define KDS_FOR_EACH_QUADRATIC(instantiate)
 #else
