@@ -205,6 +205,28 @@ TEST_CASE("a light box between heavy ones takes bounded contacts, and keeps the 
   }
 }
 
+TEST_CASE("light bodies without rebound between heavy ones that nothing presses are not let through", "[collapse]") {
+  // Two heavy bodies fly towards each other, with light ones between them: nothing accelerates any of them.
+  for (const Shape& shape : {Shape(Sphere{1}), Shape(Box{Vector3d(1, 0.875, 0.75)})}) {
+    for (int count = 3; count <= 4; ++count) {
+      CAPTURE(shape.index(), count);
+      Scene scene;
+      for (int i = 0; i < count; ++i) {
+        const bool heavy = i == 0 || i == count - 1;
+        const double velocity = i == 0 ? 1 : heavy ? -1 : 0.01 * i;
+        scene.add(shape, motion({2.5 * i, 0.01 * (i % 2), 0}, {velocity, 0, 0}, none, none), heavy ? 100 : 1, 0);
+      }
+      scene.world->advance_to(8);
+      scene.world->audit();
+      CHECK(scene.log.passed == 0);
+      CHECK(scene.log.contacts.size() < 30'000);
+      for (BodyId id = 1; id < scene.shapes.size(); ++id) {
+        CHECK(scene.world->motion(id).path.position(8)[0] > scene.world->motion(id - 1).path.position(8)[0] + 1);
+      }
+    }
+  }
+}
+
 TEST_CASE("a box that drops between two walls that lean apart comes to lie there", "[collapse]") {
   for (const double e : {0.0, 0.3}) {
     CAPTURE(e);

@@ -43,6 +43,10 @@ inline constexpr std::uint64_t collapse_meetings = 16;
 /// chains of balls that strike each other fast are not concerned, however close their contacts follow each other.
 inline constexpr double collapse_speed = 2;
 
+/// After more than ZenoPolicy::contacts each pair parts with at least this part of the greatest speed with which two of
+/// them approach each other, so that they are apart for some time though nothing presses them together.
+inline constexpr double parting_share = 0x1p-3;
+
 /// The last contacts of pairs, in the order of their times, of each place of a pair one: only those of the interval are
 /// kept.
 class Blows {

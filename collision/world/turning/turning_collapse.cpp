@@ -10,6 +10,22 @@
 #include <vector>
 
 namespace kds::collision {
+namespace {
+
+/// The greatest speed with which two of the bodies approach each other where they touch.
+double greatest_approach(const std::vector<JointBody>& bodies, const std::vector<JointPlace>& places) {
+  const auto velocity = [&](std::uint32_t i, const Eigen::Vector3d& arm) {
+    const RigidVelocity& of = bodies[i].velocity;
+    return Eigen::Vector3d(of.velocity + cross(of.angular_velocity, arm));
+  };
+  double most = 0;
+  for (const JointPlace& at : places) {
+    most = std::max(most, -dot(at.normal, velocity(at.b, at.arm_b) - velocity(at.a, at.arm_a)));
+  }
+  return most;
+}
+
+}  // namespace
 
 /// If this contact is one of a collapse (collapse.hpp), the bodies of the collapse part, all at once, each pair fast
 /// enough for a shortest flight: as after an impact without rebound and friction, which is what infinitely many of
@@ -54,7 +70,11 @@ Collapse TurningBounces<Motion>::part_together(BodySlot a, BodySlot b, const Con
                       .normal = blow.normal,
                       .arm_a = arm(of_a, blow),
                       .arm_b = arm(of_b, blow),
-                      .least = blow.least});
+                      .least = most});  // Two that nothing presses together are pressed by their neighbours.
+  }
+  if (endless) {  // Perhaps nothing presses any of them.
+    const double least = detail::parting_share * greatest_approach(bodies, places);
+    for (JointPlace& at : places) at.least = std::max(at.least, least);
   }
   if (!part_jointly(bodies, places)) return endless ? Collapse::stuck : Collapse::none;
   for (std::size_t i = 0; i < slots.size(); ++i) {
