@@ -37,8 +37,8 @@ struct Meeting {
 /// approaching passes through until it has separated.
 ///
 /// So that the log does not depend on how a scene is divided, an implementation keeps to two rules:
-/// 1. What respond() does depends on the meeting alone. It may be called more than once for a contact, and for a contact
-///    that proves later not to happen, since a domain did not know all bodies nearby.
+/// 1. What respond() does depends on the meeting alone. It may be called more than once for a contact, and for one that
+///    proves later not to happen, since a domain did not know all bodies nearby.
 /// 2. It has no effect but on the velocities, and may be called by several threads at once.
 class ContactLaw {
  public:

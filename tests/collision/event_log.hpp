@@ -31,8 +31,9 @@ enum class Kind {
 };
 
 inline const char* name(Kind kind) {
-  constexpr std::array names{"contact",    "separation",         "overlap", "wall",  "pair_began", "pair_ended",
-                             "rebound_suppressed", "rests",   "wakes", "timer", "passes"};
+  constexpr std::array names{"contact",    "separation",         "overlap", "wall",  "pair_began",
+                             "pair_ended", "rebound_suppressed", "rests",   "wakes", "timer",
+                             "passes"};
   return names[static_cast<std::size_t>(kind)];
 }
 

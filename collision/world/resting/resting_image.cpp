@@ -6,7 +6,11 @@
 #include "kds/framework/snapshot.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <utility>
+#include <vector>
 
 namespace kds::collision {
 
@@ -91,6 +95,51 @@ void RestingContacts<Motion>::Image::check(const typename Bodies<Motion>::Image&
                    "free of resting", i, "is no free slot, or listed twice");
   }
   if (free.size() != dead) image::fail("resting: not all that are free are listed");
+}
+
+template <class Motion>
+typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
+  Image image{contacts_, free_, {}, {}, {}, {}, {}, {}, {}};
+  // The list may still contain bodies that have been removed, or solved for, since they were disturbed.
+  std::copy_if(disturbed_.begin(), disturbed_.end(), std::back_inserter(image.disturbed),
+               [&](BodySlot id) { return of_[id].disturbed && bodies_.entered(id); });
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    const Member& member = of_[id];
+    image.of.push_back(in_order(id));
+    image.span_ends.push_back(member.span_ends);
+    image.calm_since.push_back(member.calm_since);
+    image.met.push_back(member.met);
+  }
+  for (BodySlot slot = 0; slot < spans_.slots(); ++slot) image.spans.push_back(spans_.time(slot));
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  return image;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::become(const Image& image) {
+  contacts_ = image.contacts, free_ = image.free, disturbed_ = image.disturbed;
+  islands_ = 0;
+  kept_.clear(), of_.clear();
+  for (BodySlot id = 0; id < image.of.size(); ++id) {
+    member(id).contacts = image.of[id];
+    for (std::uint32_t i = 0; i < image.of[id].size() && bodies_.fixed(id); ++i) contacts_[image.of[id][i]].listed = i;
+    member(id).span_ends = image.span_ends[id];
+    member(id).calm_since = image.calm_since[id];
+    member(id).met = image.met[id] != 0;
+  }
+  for (const BodySlot id : disturbed_) member(id).disturbed = true;
+  for (BodySlot id = 0; id < of_.size(); ++id) {
+    Member& member = of_[id];
+    const auto at_wall = [this](Slot slot) { return contacts_[slot].wall >= 0; };
+    member.carried = bodies_.fixed(id) ? std::any_of(member.contacts.begin(), member.contacts.end(), at_wall)
+                                       : member.disturbed || !member.contacts.empty();
+  }
+  releases_.resize(0);
+  releases_.resize(contacts_.size());
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) releases_.set(slot, image.releases[slot]);
+  spans_.resize(0);
+  spans_.resize(image.spans.size());
+  for (BodySlot slot = 0; slot < image.spans.size(); ++slot) spans_.set(slot, image.spans[slot]);
 }
 
 #define KDS_INSTANTIATE(motion)                                                \
