@@ -141,7 +141,7 @@ void BoxGrid::restart_guests() {
   }
 }
 
-/// Counts work that a level has caused because it hosts, or does not. What it saves is counted below zero.
+/// Counts work that there has been because a level hosts, or does not; if negative, work that this has saved.
 void BoxGrid::waste(Level& level, std::int64_t work) {
   level.wasted = std::max<std::int64_t>(level.wasted + work, 0);
   if (level.wasted > static_cast<std::int64_t>(size_)) unsettled_ = true;
