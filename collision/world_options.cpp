@@ -25,6 +25,9 @@ void validate(const WorldOptions& options) {
     default:
       throw std::invalid_argument("WorldOptions.response: unknown");
   }
+  if (options.law && options.response != Response::callback) {
+    throw std::invalid_argument("WorldOptions.law: needs response callback");
+  }
   if (options.zeno.contacts == 0) throw std::invalid_argument("WorldOptions.zeno.contacts: must be > 0");
   if (!(options.zeno.interval >= 0)) throw std::invalid_argument("WorldOptions.zeno.interval: must be >= 0");
   if (!(options.shortest_flight > 0)) throw std::invalid_argument("WorldOptions.shortest_flight: must be > 0");

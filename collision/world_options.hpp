@@ -12,11 +12,14 @@
 
 namespace kds::collision {
 
+class ContactLaw;
+
 /// How the world responds to contacts of bodies. Walls reflect bodies in every mode.
 enum class Response {
   none,      ///< reports contacts and separations; bodies pass through each other
   elastic,   ///< impulses by the bodies' restitution and, if they turn, friction; motions change at each contact
-  callback,  ///< as elastic, but the listener changes the motions; a pair it leaves approaching passes through
+  callback,  ///< as elastic, but a law (WorldOptions::law) or the listener changes the motions; a pair that is left
+             ///< approaching passes through
 };
 
 /// What ends bounces that pile up in time (Zeno). The rebound of a contact, of two bodies in mode `elastic` or with a
@@ -61,6 +64,10 @@ struct WorldOptions {
   /// to come, and so do all steps from then on.
   double window = never;
   Response response = Response::none;
+  /// With response `callback`, and only then: how bodies respond to contacts, before the listener is told of them
+  /// (collision/response/contact_law.hpp). Null: as the listener changes their motions. Must outlive the world, and is no
+  /// part of snapshots: the world that loads one has a law of its own.
+  const ContactLaw* law = nullptr;
   BroadPhaseKind broad_phase = BroadPhaseKind::automatic;
   /// Hz, finite and >= 0; frame rate of the swept AABBs of `sap`, which needs one > 0 with a finite 1 / rate; other
   /// broad phases ignore it.

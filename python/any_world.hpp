@@ -146,7 +146,7 @@ class AnyWorld : public AnyBodies {
 
 /// Which type of world.
 struct WorldType {
-  int degree = 1;           ///< from 1 to 5; 1 or 2 of bodies that turn, and in domains
+  int degree = 1;           ///< from 1 to 5; 1 or 2 of bodies that turn
   bool turning = false;     ///< whether bodies turn, or keep their orientation
   std::size_t domains = 1;  ///< of a ParallelWorld, as in ParallelOptions; 1: a World
   bool record = false;      ///< whether it can be asked for pictures

@@ -298,9 +298,7 @@ std::unique_ptr<AnyWorld> make_world(const WorldType& type, const WorldOptions& 
   using kds::certificates::RigidMotion;
   const int degree = type.degree;
   const auto make = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
-    return std::make_unique<WorldOf<M>>(options, type.record, std::move(listener));
-  };
-  const auto divide = [&]<class M>(M) -> std::unique_ptr<AnyWorld> {
+    if (!type.divided()) return std::make_unique<WorldOf<M>>(options, type.record, std::move(listener));
     const ParallelOptions parallel{.threads = options.threads, .domains = type.domains};
     return std::make_unique<WorldOf<M, true>>(options, parallel, std::move(listener));
   };
@@ -308,11 +306,6 @@ std::unique_ptr<AnyWorld> make_world(const WorldType& type, const WorldOptions& 
     return std::invalid_argument("degree: must be 1 (lines)" + most + ", not " + std::to_string(degree));
   };
   if (type.divided() && type.record) throw std::invalid_argument("record: must be False in a world in domains");
-  if (type.divided() && type.turning) throw std::invalid_argument("domains: must be 1 where bodies turn");
-  if (type.divided()) {
-    if (degree != 1 && degree != 2) throw refuse(" or 2 (parabolas) in a world in domains");
-    return degree == 1 ? divide(PointMotion<1>{}) : divide(PointMotion<2>{});
-  }
   if (type.turning) {
     if (degree != 1 && degree != 2) throw refuse(" or 2 (parabolas) where bodies turn");
     return degree == 1 ? make(RigidMotion<1>{}) : make(RigidMotion<2>{});

@@ -12,15 +12,39 @@ using Eigen::Vector3d;
 
 template <int Degree>
 BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
-                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, bool sharp,
-                             double horizon, const TimeWindow& interest)
+                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, double horizon,
+                             const TimeWindow& interest)
     : triangle_(triangle),
       radius_(ball.radius),
       motion_(motion),
       gap_(gap),
       horizon_(horizon),
-      interest_{std::max(interest.begin, 0.0), std::min(interest.end, horizon)} {
+      interest_{std::max(interest.begin, 0.0), std::min(interest.end, horizon)} {}
+
+template <int Degree>
+BallTouch<Degree>::BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball,
+                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, bool sharp,
+                             double horizon, const TimeWindow& interest)
+    : BallTouch(triangle, ball, motion, gap, horizon, interest) {
   add_face(sharp);
+  add_rim();
+}
+
+template <int Degree>
+BallTouch<Degree> BallTouch<Degree>::until_met(const PlacedTriangle& triangle, const PlacedBall& ball,
+                                               const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap,
+                                               bool sharp, double horizon, const TimeWindow& interest, double tau) {
+  BallTouch touch(triangle, ball, motion, gap, horizon, interest);
+  touch.add_face(sharp);
+  TimeWindow& left = touch.interest_;
+  left.end = std::min(left.end, std::max(left.begin, touch.first_inside(tau)));
+  touch.add_rim();
+  return touch;
+}
+
+/// The edges and vertices.
+template <int Degree>
+void BallTouch<Degree>::add_rim() {
   for (std::size_t i = 0; i < 3; ++i) add_edge(i);
   for (std::size_t i = 0; i < 3; ++i) add_vertex(i);
 }
@@ -88,14 +112,14 @@ void BallTouch<Degree>::add_face(bool sharp) {
 
 template <int Degree>
 void BallTouch<Degree>::add_edge(std::size_t i) {
+  const Path path = across_edge(i);
+  if (!matters(path)) return;
   const Vector3d along = unit(triangle_.edge(i));
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
   piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
   // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
-  const Path path = across_edge(i);
-  if (!matters(path)) return;
   piece.conditions.push_back(within(path));
   pieces_.add(piece);
 }

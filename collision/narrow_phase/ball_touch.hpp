@@ -41,6 +41,12 @@ class BallTouch {
   BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
             const ContactGap<Degree>& gap, bool sharp, double horizon, const TimeWindow& interest);
 
+  /// The same for first_inside(tau) and approaching() there alone. Most balls that meet a triangle meet its face, and
+  /// edges and corners that they could only meet later are left out.
+  static BallTouch until_met(const PlacedTriangle& triangle, const PlacedBall& ball,
+                             const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, bool sharp,
+                             double horizon, const TimeWindow& interest, double tau);
+
   double first_inside(double tau) const { return pieces_.first_inside(tau); }
   double enter(double tau) const { return pieces_.enter(tau); }
   double leave(double tau) const { return pieces_.leave(tau); }
@@ -49,11 +55,15 @@ class BallTouch {
   double turning(double tau, double end) const;
 
  private:
+  BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
+            const ContactGap<Degree>& gap, double horizon, const TimeWindow& interest);
+
   /// A slab or a cylinder with its ends has eight conditions at most.
   using Pieces = TouchPieces<Degree, 7, 8>;
   using Piece = typename Pieces::Piece;
 
   void add_face(bool sharp);
+  void add_rim();
   void add_edge(std::size_t i);
   void add_vertex(std::size_t i);
   SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance) const;

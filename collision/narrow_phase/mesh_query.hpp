@@ -108,18 +108,18 @@ class Query : private PairTimes<Degree> {
     TouchDirection direction{};
     slice_by_slice({tau, tau}, [&](const TimeSlice& slice) {
       EarliestFirst goal;
-      walk(
-          goal, slice,
-          [&](std::uint32_t i, const PlacedTriangle& triangle, std::uint32_t j, const Part& part, TimeWindow window) {
-            if (!may_touch(triangle, part, motion_, margin_, window)) return;
-            const Touching touch = touching_of(triangle, part, {0, last_});
-            const TouchDirection here = touch.direction(tau);
-            const bool inside = touch.first_inside(tau) == tau;
-            const Rank rank{inside ? (here.approaching ? 0 : 1) : 2, inside ? touch.enter(tau) : here.separation, i, j};
-            if (best && !(rank < *best)) return;
-            best = rank;
-            direction = here;
-          });
+      walk(goal, slice,
+           [&](std::uint32_t i, const PlacedTriangle& triangle, std::uint32_t j, const Part& part, TimeWindow window) {
+             if (!may_touch(triangle, part, motion_, margin_, window)) return;
+             const Touching touch = touching_of(triangle, part, {tau, tau});
+             const TouchDirection here = touch.direction(tau);
+             const bool inside = touch.first_inside(tau) == tau;
+             const double since = inside ? at_all_times(touch, triangle, part).enter(tau) : here.separation;
+             const Rank rank{inside ? (here.approaching ? 0 : 1) : 2, since, i, j};
+             if (best && !(rank < *best)) return;
+             best = rank;
+             direction = here;
+           });
       return true;
     });
     if (!best) return without_contact(tau);
@@ -165,6 +165,12 @@ class Query : private PairTimes<Degree> {
     }
   }
 
+  /// Valid for all times, if `touch` is for some.
+  Touching at_all_times(const Touching& touch, const PlacedTriangle& triangle, const Part& part) const {
+    if constexpr (!in_pieces) return touch;
+    return touching_of(triangle, part, {0, last_});
+  }
+
   /// The first contact in [tau, limit], or TimeSpans::infinity. Raises `passed_over` to the ends of those before it.
   static double first_time(const Touching& touch, double tau, double limit, ContactMode mode, double& passed_over) {
     for (;;) {
@@ -185,6 +191,12 @@ class Query : private PairTimes<Degree> {
       return first_time(Touching(triangle, part, motion_, gap_, sharp(), window), tau0, window.end, mode, passed_over);
     } else {
       if (!may_touch(triangle, part, motion_, margin_, window)) return TimeSpans::infinity;
+      if constexpr (with_ball) {
+        const Touching touch = Touching::until_met(triangle, part, motion_, gap_, sharp(), last_, window, tau0);
+        const double tau = touch.first_inside(tau0);
+        if (tau > window.end) return TimeSpans::infinity;
+        if (mode == ContactMode::transparent || touch.approaching(tau)) return tau;
+      }
       return first_time(touching_of(triangle, part, window), tau0, window.end, mode, passed_over);
     }
   }
@@ -221,9 +233,9 @@ class Query : private PairTimes<Degree> {
       walk(goal, slice,
            [&](std::uint32_t, const PlacedTriangle& triangle, std::uint32_t, const Part& part, TimeWindow window) {
              if (goal.found || !may_touch(triangle, part, motion_, margin_, window) || window.begin > tau) return;
-             const Touching touch = touching_of(triangle, part, {0, last_});
+             const Touching touch = touching_of(triangle, part, {tau, tau});
              if (touch.first_inside(tau) != tau) return;
-             end = touch.leave(tau);
+             end = at_all_times(touch, triangle, part).leave(tau);
              goal.found = true;
            });
       return true;

@@ -36,12 +36,23 @@ class PairTimes {
   /// until it returns true. In each the margin is about the same and the path about straight, see `slice_end`.
   template <class Run>
   void slice_by_slice(const TimeWindow& window, const Run& run) const {
+    TimeWindow left{window.begin, std::min(window.end, last_)};
+    if constexpr (Degree >= 2) {
+      // Most that are asked are near each other, and have their answer in the first slice: then it need not be found
+      // out until when they are near, which costs more than the answer.
+      const Eigen::Vector3d place = place_on(motion_.coefficients, left.begin);
+      if (left.begin <= left.end && dot(place, place) < 0.99 * radii_ * radii_) {
+        const TimeSlice slice{left.begin, slice_end(left.begin, left.end)};
+        if (run(slice) || slice.end >= left.end) return;
+        left.begin = slice.end;
+      }
+    }
     std::array<double, std::size_t{Degree} + 1> radius = margin_;
     radius[0] += radii_;
     const auto spans = near_spans(motion_.coefficients, radius, last_);
     for (std::size_t i = 0; i < stretches(spans); ++i) {
-      double begin = std::max(window.begin, spans.begin[i]);
-      const double end = std::min({window.end, spans.end[i], last_});
+      double begin = std::max(left.begin, spans.begin[i]);
+      const double end = std::min(left.end, spans.end[i]);
       while (begin <= end) {
         const TimeSlice slice{begin, slice_end(begin, end)};
         if (run(slice)) return;

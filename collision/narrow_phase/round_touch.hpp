@@ -34,7 +34,8 @@ SpansOf<Degree> spans_below_zero(const std::array<double, std::size_t{Degree} + 
 }
 
 /// Whether a path comes as near to the origin as `distance` within a window, judged by its chord: which it leaves by no
-/// more than an eighth of the second derivative's bound times length^2.
+/// more than an eighth of the second derivative's bound times length^2. A parabola also by how far it comes along the
+/// direction in which its chord is nearest.
 template <int Degree>
 bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& window, double distance) {
   const double length = window.end - window.begin;
@@ -43,7 +44,16 @@ bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& windo
   const double square = dot(along, along);
   const double part = square > 0 ? std::clamp(-dot(begin, along) / square, 0.0, 1.0) : 0.0;
   const Eigen::Vector3d nearest = begin + part * along;
-  if constexpr (Degree == 2) distance += 0.25 * length * length * std::sqrt(dot(path[2], path[2]));
+  if constexpr (Degree == 2) {
+    const double chord = std::sqrt(dot(nearest, nearest));
+    if (!(chord > distance)) return true;
+    const double c1 = dot(nearest, path[1]), c2 = dot(nearest, path[2]);
+    const auto along_nearest = [&](double tau) { return dot(nearest, place_on(path, tau)); };
+    double least = std::min(along_nearest(window.begin), along_nearest(window.end));
+    const double turn = -0.5 * c1 / c2;
+    if (c2 > 0 && turn > window.begin && turn < window.end) least = std::min(least, along_nearest(turn));
+    return !(least > distance * chord);
+  }
   if constexpr (Degree >= 3) {
     double bend = 0;
     for (std::size_t i = Degree; i >= 2; --i) {

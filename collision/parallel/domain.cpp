@@ -22,16 +22,15 @@ WorldOptions for_domain(WorldOptions options, double now) {
 
 template <class Motion>
 Domain<Motion>::Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs,
-                       bool first, const ContactLaw* law)
+                       bool first)
     : division_(division),
       index_(index),
       logs_(logs),
       first_(first),
       resolves_(options.response != Response::none),
-      by_law_(law != nullptr),
+      by_law_(options.law != nullptr),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)) {
-  engine_.respond_by(law);
   // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away.
   const Partition& partition = division.partition;
   partition.each_within(partition.cell(index), 2 * division.halo, [&](std::size_t other) {

@@ -66,9 +66,8 @@ class Domain final : private BasicWorldListener<Motion> {
   using Change = MotionChange<Motion>;
 
   /// `logs`: whether events are recorded. `first`: of the domains with one store, this tells it of bodies without an
-  /// owner. `law`: as ParallelOptions::law. The division must outlive the domain.
-  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs, bool first,
-         const ContactLaw* law = nullptr);
+  /// owner. The division must outlive the domain.
+  Domain(const WorldOptions& options, const Division& division, std::size_t index, double now, bool logs, bool first);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
 

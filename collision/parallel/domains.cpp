@@ -10,9 +10,8 @@
 namespace kds::collision {
 
 template <class Motion>
-Domains<Motion>::Domains(const WorldOptions& options, const ParallelOptions& parallel, std::size_t threads,
-                         Engine<Motion>& whole, Team& team)
-    : options_(options), law_(parallel.law), threads_(threads), store_(options, whole), team_(team) {}
+Domains<Motion>::Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team)
+    : options_(options), threads_(threads), store_(options, whole), team_(team) {}
 
 template <class Motion>
 template <class Work>
@@ -40,7 +39,7 @@ void Domains<Motion>::make(double now) {
   heard_.clear();
   first_ = (team_.rank() * size() + team_.count() - 1) / team_.count();
   for (std::size_t i = first_; i < size() && is_here(i); ++i) {
-    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_, law_));
+    domains_.push_back(std::make_unique<Domain<Motion>>(options_, *division_, i, now, logs_, i == first_));
   }
   std::vector<std::vector<BodySlot>> known(domains_.size());
   const auto& bodies = store_.bodies();

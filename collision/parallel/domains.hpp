@@ -38,8 +38,7 @@ class Domains {
   using Overlap = typename Transfer<Motion>::Overlap;
 
   /// `whole`: the world of the whole scene, which must outlive this.
-  Domains(const WorldOptions& options, const ParallelOptions& parallel, std::size_t threads, Engine<Motion>& whole,
-          Team& team);
+  Domains(const WorldOptions& options, std::size_t threads, Engine<Motion>& whole, Team& team);
 
   bool any() const { return division_ != nullptr; }
   std::size_t size() const { return any() ? division_->partition.size() : 1; }
@@ -162,7 +161,6 @@ class Domains {
   void check_attached(BodySlot sensor, BodySlot owner) const;
 
   const WorldOptions options_;
-  const ContactLaw* const law_;
   const std::size_t threads_;
   BodyStore<Motion> store_;
   Team& team_;

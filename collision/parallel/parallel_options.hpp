@@ -8,7 +8,6 @@
 
 namespace kds::collision {
 
-class ContactLaw;
 class StepListener;
 
 /// How a scene is divided among threads and processes.
@@ -28,10 +27,6 @@ struct ParallelOptions {
   /// events are sent (collision/parallel/step_events.hpp); the listener is told only of stretches that are run as one
   /// world. Either all processes have one or none. Must outlive the world.
   StepListener* steps = nullptr;
-  /// With WorldOptions::response `callback`, and only then: how bodies respond to contacts
-  /// (collision/response/contact_law.hpp). Null: as a listener changes their motions (ParallelWorld::change()), and the
-  /// scene is run as one world. The same in all processes. Must outlive the world; no part of what is saved.
-  const ContactLaw* law = nullptr;
 };
 
 /// What a ParallelWorld has done so far. Only the first four are of the scene; the others say how it was run.

@@ -54,14 +54,9 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
         world_(options, &relayed_),
         store_(detail::EngineOf<Motion>::of(world_)),
         now_(options.start_time),
-        domains_(options, parallel, threads_, store_, team_),
-        logs_(records(listener)) {
-    if (parallel_.law && options.response != Response::callback) {
-      throw std::invalid_argument("ParallelOptions.law: needs WorldOptions.response callback");
-    }
-    store_.respond_by(parallel_.law);
-    responds_ = options.response != Response::callback || parallel_.law;
-  }
+        domains_(options, threads_, store_, team_),
+        logs_(records(listener)),
+        responds_(options.response != Response::callback || options.law) {}
 
   World& whole() {
     require_told("ParallelWorld::whole");
@@ -382,7 +377,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   double longest_ = 0;       ///< s: the longest that the window may be
   double stretch_ = 0;       ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
-  bool responds_ = true;   ///< whether motions after contacts are known without a listener
+  const bool responds_;    ///< whether motions after contacts are known without a listener
   bool unstarted_ = true;  ///< no body has entered
   bool telling_ = false;
 };

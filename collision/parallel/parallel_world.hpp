@@ -43,7 +43,7 @@ class ParallelListener {
 ///
 /// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; some lean on each other (what
 /// lies on fixed bodies or leans on walls is divided, docs/parallel.md), or bodies that turn come to rest; meshes that
-/// may meet themselves; box functions; response `callback` without ParallelOptions::law; reports of pairs or of pieces.
+/// may meet themselves; box functions; response `callback` without WorldOptions::law; reports of pairs or of pieces.
 /// What this costs is in docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for

@@ -48,6 +48,7 @@ void validate(const PeriodicOptions& options) {
     fail("elastic_within: must be finite and >= 0");
   }
   if (options.world.response != Response::none) fail("world.response: must not be given");
+  if (options.world.law) fail("world.law: must not be given");
   if (options.world.walls) fail("world.walls: must not be given; see boundaries");
   if (options.world.report_pairs || options.world.report_pieces) {
     fail("world: pairs of bounding volumes and pieces of motion are not reported");

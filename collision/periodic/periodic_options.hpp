@@ -34,7 +34,7 @@ struct PeriodicOptions {
   /// s, >= 0: a contact of a body that has had another within this time is elastic. Inelastic gases need it: their
   /// contacts may pile up in time (inelastic collapse). [Luding98]
   double elastic_within = 0;
-  /// The other options. `response` and `walls` are for the periodic world to choose and must not be given, nor
+  /// The other options. `response`, `law` and `walls` are for the periodic world to choose and must not be given, nor
   /// `report_pairs` or `report_pieces`.
   WorldOptions world{};
 };

@@ -33,10 +33,10 @@ struct Meeting {
   MeetingBody a, b;
 };
 
-/// The response to contacts in a ParallelWorld of mode `callback` (ParallelOptions::law). A pair that it leaves
-/// approaching passes through until it has separated.
+/// The response to contacts in mode `callback` (WorldOptions::law), of a World or of a ParallelWorld. A pair that it
+/// leaves approaching passes through until it has separated.
 ///
-/// So that the log does not depend on how a scene is divided, an implementation keeps to two rules:
+/// So that the log of a ParallelWorld does not depend on how a scene is divided, an implementation keeps to two rules:
 /// 1. What respond() does depends on the meeting alone. It may be called more than once for a contact, and for one that
 ///    proves later not to happen, since a domain did not know all bodies nearby.
 /// 2. It has no effect but on the velocities, and may be called by several threads at once.

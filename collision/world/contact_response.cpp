@@ -67,7 +67,7 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
   bool suppressed = false;
   bool passes = false;
   const bool responds = bodies_[a].inverse_mass + bodies_[b].inverse_mass > 0;
-  if (responds || !(elastic || law_)) {
+  if (responds || !(elastic || options_.law)) {
     const std::uint64_t burst = count_meeting(a, b);
     suppressed = passes = burst > patience();  // No response helps: between fixed bodies that close in, say.
     counters_.rebounds_suppressed += passes;
@@ -85,7 +85,7 @@ void ContactResponse<Motion>::process_contact(BodySlot a, BodySlot b, const Cont
     if (passes || again || bounces_.parting(a, b, contact) < 0) let_through(a, b, contact);
   };
   try {
-    if (law_ && responds && !passes) respond_by_law(a, b, contact);
+    if (options_.law && responds && !passes) respond_by_law(a, b, contact);
     calls_.tell([&](auto& listener, auto& world) {
       listener.contact(world, event);
       if (suppressed) listener.rebound_suppressed(world, event);
@@ -103,7 +103,7 @@ void ContactResponse<Motion>::respond_by_law(BodySlot a, BodySlot b, const Conta
   const Meeting meeting{contact.time, contact.point, contact.normal, meeting_body(a), meeting_body(b)};
   Velocities after_a = meeting.a.before, after_b = meeting.b.before;
   calls_.tell([&](auto&, auto&) {
-    law_->respond(meeting, after_a, after_b);
+    options_.law->respond(meeting, after_a, after_b);
     require_lawful(a, meeting.a.before, after_a);
     require_lawful(b, meeting.b.before, after_b);
   });

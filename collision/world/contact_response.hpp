@@ -25,9 +25,6 @@ class ContactResponse {
   ContactResponse(const ContactResponse&) = delete;
   ContactResponse& operator=(const ContactResponse&) = delete;
 
-  /// In mode `callback` contacts are responded to by a law, if it is not null, which must outlive this.
-  void respond_by(const ContactLaw* law) { law_ = law; }
-
   /// The next event of the pairs; of bodies and walls; of meshes that bend, each with itself. Precondition: it is due.
   void process_pair();
   void process_wall() { bounces_.process_wall(); }
@@ -54,7 +51,6 @@ class ContactResponse {
   MotionUpdates<Motion>& motions_;
   ListenerCalls<Motion>& calls_;
   const Guard& guard_;
-  const ContactLaw* law_ = nullptr;
   BendingBounces<Motion> bending_;
   std::conditional_t<turns<Motion>, TurningBounces<Motion>, Bounces<Motion>> bounces_;
 };

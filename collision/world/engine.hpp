@@ -58,9 +58,6 @@ class Engine {
   Image image() const;
   /// The same at t, but for the bodies, which are saved elsewhere; others may have them.
   Image image_without_bodies(double t) const;
-  /// How contacts are responded to in mode `callback`; null: by the listener. The law must outlive this, and is no part
-  /// of its state.
-  void respond_by(const ContactLaw* law) { response_.respond_by(law); }
   /// Writes an image, or reads and checks one that this can become. Throws as BasicWorld::archive().
   template <class Archive>
   void archive(Archive& archive, Image& image) const;

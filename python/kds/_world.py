@@ -21,10 +21,9 @@ class World(Running, Bodies, Edits, Queries):
 
     degree: 1 for straight paths, 2 for parabolas too, 3 to 5 for splines (docs/splines.md). turning: whether bodies
     turn (docs/turning.md), at degree 1 or 2; else they keep their orientation. domains: more than 1, or 0 for as many as
-    are best, for a world that is run in parts by `threads` (docs/parallel.md), of degree 1 or 2, whose bodies do not
-    turn: its events are the same. Such a world runs by advance_to() alone and calls no functions; to be asked or
-    changed it is made one again, which takes as long as adding all bodies. Other arguments are the options of the C++
-    library (collision/world_options.hpp):
+    are best, for a world that is run in parts by `threads` (docs/parallel.md): its events are the same. Such a world
+    runs by advance_to() alone and calls no functions; to be asked or changed it is made one again, which takes as long
+    as adding all bodies. Other arguments are the options of the C++ library (collision/world_options.hpp):
 
     response: 'none' (bodies pass through each other, contacts and separations are reported), 'elastic' (they bounce by
         restitution and rest on each other), 'callback' (functions that are called, see on(), change the motions).

@@ -4,6 +4,7 @@
 #include "collision/queries/future.hpp"
 #include "collision/queries/near_pairs.hpp"
 #include "collision/queries/nearest.hpp"
+#include "collision/response/contact_law.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/history.hpp"
@@ -383,14 +384,10 @@ TEST_CASE("recipe: data of one's own") {
 }
 
 TEST_CASE("recipe: a response of one's own") {
-  struct Sticky final : WorldListener<1> {
-    void contact(World<1>& world, const PairEvent& event) override {
-      for (const BodyId id : {event.a, event.b}) {
-        world.update_motion(id, Line::line(world.motion(id).position(world.now()), {0, 0, 0}, world.now()));
-      }
-    }
+  struct Sticky final : ContactLaw {
+    void respond(const Meeting&, Velocities& a, Velocities& b) const override { a = b = {}; }
   } sticky;
-  World<1> world({.response = Response::callback}, &sticky);
+  World<1> world({.response = Response::callback, .law = &sticky});
   world.add_body({.shape = Sphere{1}, .motion = {Line::line({-3, 0, 0}, {1, 0, 0})}});
   world.add_body({.shape = Sphere{1}, .motion = {Line::line({3, 0, 0}, {-1, 0, 0})}});
   world.advance_to(9);

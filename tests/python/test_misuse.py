@@ -208,8 +208,8 @@ class Misuse(unittest.TestCase):
     def test_options(self):
         self.refused(r"degree: must be 1 \(lines\), 2 .* or up to 5 .*, not 6", lambda: kds.World(6))
         self.refused("degree: must be 1 .* where bodies turn, not 3", lambda: kds.World(3, True))
-        self.refused("degree: must be 1 .* in domains, not 3", lambda: kds.World(3, domains=2))
-        self.refused("domains: must be 1 where bodies turn", lambda: kds.World(turning=True, domains=0))
+        self.refused("degree: must be 1 .* or up to 5 .*, not 6", lambda: kds.World(6, domains=2))
+        self.refused("degree: must be 1 .* where bodies turn, not 3", lambda: kds.World(3, True, domains=0))
         self.refused("response", lambda: kds.World(domains=2, response="callbac"))
         self.refused("report_pairs: must be False in a .* in domains", lambda: kds.World(domains=2, report_pairs=True))
         self.refused("report_pieces: must be False in a .* in domains", lambda: kds.World(domains=0, report_pieces=True))

@@ -126,9 +126,10 @@ class Domains(unittest.TestCase):
         return world
 
     def test_events_are_those_of_one_world(self):
-        for seed, degree in ((1, 1), (2, 2)):
+        for seed, degree, turning in ((1, 1, False), (2, 2, False), (3, 3, False), (5, 5, False), (6, 1, True)):
             with self.subTest(seed=seed):
-                one, many = self.world(seed, degree=degree), self.world(seed, degree=degree, domains=4, threads=2)
+                options = dict(degree=degree, turning=turning)
+                one, many = self.world(seed, **options), self.world(seed, **options, domains=4, threads=2)
                 logs = []
                 for world in (one, many):
                     log = world.advance_to(0.5).tobytes()
@@ -141,7 +142,7 @@ class Domains(unittest.TestCase):
                 self.assertEqual(logs[0], logs[1])
                 self.assertEqual(one.positions().tobytes(), many.positions().tobytes())
                 copies = [pickle.loads(pickle.dumps(many))]
-                other = self.world(seed, degree=degree)
+                other = self.world(seed, **options)
                 other.load(many.save())
                 copies.append(other)
                 expected = one.advance_to(1.3).tobytes()

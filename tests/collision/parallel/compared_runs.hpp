@@ -129,7 +129,6 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
   const std::string what = how.str();
   WholeLog<Motion> right;
   BasicWorld<Motion> world(scene.options, &right);
-  collision::detail::EngineOf<Motion>::of(world).respond_by(manner.parallel.law);
   scene.fill(world);
   world.advance_to(scene.end_time);
 
@@ -150,7 +149,6 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
       const Snapshot saved = save(divided);
       WholeLog<Motion> later;
       BasicWorld<Motion> loaded(scene.options, &later);
-      collision::detail::EngineOf<Motion>::of(loaded).respond_by(manner.parallel.law);
       restore(saved, loaded);
       loaded.audit();
       loaded.advance_to(scene.end_time);

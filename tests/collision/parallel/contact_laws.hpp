@@ -64,13 +64,10 @@ class LawStageMaker {
   Staging<Motion> scene() {
     Staging<Motion> scene = stages_.scene();
     scene.options.response = Response::callback;
+    scene.options.law = &law_;
     return scene;
   }
-  Manner manner(std::size_t most_domains) {
-    Manner manner = stages_.manner(most_domains);
-    manner.parallel.law = &law_;
-    return manner;
-  }
+  Manner manner(std::size_t most_domains) { return stages_.manner(most_domains); }
 
  private:
   StageMaker<Motion> stages_;

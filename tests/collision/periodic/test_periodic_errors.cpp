@@ -1,5 +1,6 @@
 // What a periodic world refuses, in one line that says what is wrong, and without having changed anything.
 #include "collision/periodic/periodic_world.hpp"
+#include "collision/response/contact_law.hpp"
 #include "tests/collision/periodic/periodic_scenes.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
@@ -15,6 +16,10 @@ namespace test_periodic_errors {
 
 using namespace periodic_scenes;
 using Catch::Contains;
+
+struct LeavesThem final : ContactLaw {
+  void respond(const Meeting&, Velocities&, Velocities&) const override {}
+};
 
 std::string refusal(const std::function<void(PeriodicOptions&)>& change) {
   PeriodicOptions options;
@@ -44,6 +49,8 @@ TEST_CASE("periodic world: options that are out of range are named") {
   CHECK_THAT(refusal([](auto& o) { o.wall_temperatures[3] = -1; }), Contains("wall_temperatures[3]: must be in"));
   CHECK_THAT(refusal([](auto& o) { o.elastic_within = -1; }), Contains("elastic_within: must be finite and >= 0"));
   CHECK_THAT(refusal([](auto& o) { o.world.response = Response::elastic; }), Contains("world.response: must not"));
+  static const LeavesThem law;
+  CHECK_THAT(refusal([](auto& o) { o.world.law = &law; }), Contains("world.law: must not"));
   CHECK_THAT(refusal([](auto& o) { o.world.walls = Walls{{0, 0, 0}, {1, 1, 1}}; }), Contains("see boundaries"));
   CHECK_THAT(refusal([](auto& o) { o.world.report_pairs = true; }), Contains("not reported"));
   CHECK_THAT(refusal([](auto& o) { o.world.window = 0; }), Contains("window: must be > 0"));

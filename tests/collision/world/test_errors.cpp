@@ -1,4 +1,5 @@
 // What the world refuses, and that it goes on.
+#include "collision/response/contact_law.hpp"
 #include "tests/collision/random_scenes.hpp"
 #include "tests/support/throws.hpp"
 
@@ -19,6 +20,10 @@ using kds::tests::throws;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
+struct LeavesThem final : ContactLaw {
+  void respond(const Meeting&, Velocities&, Velocities&) const override {}
+};
+
 TEST_CASE("Options that make no sense are refused by name", "[world]") {
   const auto refuse = [](auto&& change, const char* what) {
     WorldOptions options;
@@ -31,6 +36,10 @@ TEST_CASE("Options that make no sense are refused by name", "[world]") {
   refuse([](WorldOptions& o) { o.zeno.interval = -1; }, "zeno.interval");
   refuse([](WorldOptions& o) { o.zeno.interval = nan; }, "zeno.interval");
   refuse([](WorldOptions& o) { o.zeno.contacts = 0; }, "zeno.contacts");
+  static const LeavesThem law;
+  for (const Response response : {Response::none, Response::elastic}) {
+    refuse([&](WorldOptions& o) { o.response = response, o.law = &law; }, "WorldOptions.law: needs response callback");
+  }
   for (const double rate : {0.0, -1.0, nan, never, 1e-310}) {
     refuse([&](WorldOptions& o) { o.broad_phase = BroadPhaseKind::sap, o.rate = rate; }, "rate");
   }

@@ -68,23 +68,23 @@ TEMPLATE_TEST_CASE_SIG("Domains: how far a path leaves the chord between two of 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics to quintics have the events of one world", "[parallel]",
                        ((int Degree), Degree), 3, 4, 5) {
   Seen seen;
-  tests::compare_stagings<certificates::PointMotion<Degree>>(1, 40, 8, seen);
-  tests::compare_stagings<certificates::PointMotion<Degree>>(1001, 4, 100, seen);
+  tests::compare_stagings<certificates::PointMotion<Degree>>(1, 16, 8, seen);
+  tests::compare_stagings<certificates::PointMotion<Degree>>(1001, 2, 100, seen);
   INFO(seen.text());
-  CHECK(seen.events > 3000);
-  CHECK(seen.divided > 15);
-  CHECK(seen.windows > 100);
-  CHECK(seen.corrected > 20);
+  CHECK(seen.events > 1200);
+  CHECK(seen.divided > 6);
+  CHECK(seen.windows > 25);
+  CHECK(seen.corrected > 4);
 }
 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics and quintics that respond by a law", "[parallel]",
                        ((int Degree), Degree), 3, 5) {
   Seen seen;
-  tests::compare_laws<certificates::PointMotion<Degree>>(1, 24, 8, seen);
+  tests::compare_laws<certificates::PointMotion<Degree>>(1, 12, 8, seen);
   INFO(seen.text());
-  CHECK(seen.events > 1000);
-  CHECK(seen.divided > 8);
-  CHECK(seen.corrected > 10);
+  CHECK(seen.events > 500);
+  CHECK(seen.divided > 4);
+  CHECK(seen.corrected > 5);
 }
 
 TEST_CASE("Domains: bodies on cubics that come to rest on floors have the events of one world", "[parallel]") {
