@@ -85,7 +85,13 @@ class Query : private PairTimes<Degree> {
     return first;
   }
 
-  bool touching(double tau) const { return contact_end(tau) != tau; }
+  bool touching(double tau) const {
+    bool any = false;
+    first_touching({tau, tau}, [&](const PlacedTriangle& triangle, const Part& part) {
+      any = in_pieces || leave(triangle, part, tau) != tau;
+    });
+    return any;
+  }
 
   /// Jumps from the end of one contact to the end of another that still holds there.
   double first_free_time(double tau, double limit) const {
@@ -114,7 +120,7 @@ class Query : private PairTimes<Degree> {
              const Touching touch = touching_of(triangle, part, {tau, tau});
              const TouchDirection here = touch.direction(tau);
              const bool inside = touch.first_inside(tau) == tau;
-             const double since = inside ? at_all_times(touch, triangle, part).enter(tau) : here.separation;
+             const double since = inside ? touch.enter(tau) : here.separation;
              const Rank rank{inside ? (here.approaching ? 0 : 1) : 2, since, i, j};
              if (best && !(rank < *best)) return;
              best = rank;
@@ -156,7 +162,7 @@ class Query : private PairTimes<Degree> {
     return a_.mesh.sharp();
   }
 
-  /// Valid for times in the window.
+  /// Valid for times in the window; leave(tau) as far as the pieces that the two come near to within it go.
   Touching touching_of(const PlacedTriangle& triangle, const Part& part, const TimeWindow& window) const {
     if constexpr (in_pieces) {
       return Touching(triangle, part, motion_, gap_, sharp(), last_, window);
@@ -165,10 +171,13 @@ class Query : private PairTimes<Degree> {
     }
   }
 
-  /// Valid for all times, if `touch` is for some.
-  Touching at_all_times(const Touching& touch, const PlacedTriangle& triangle, const Part& part) const {
-    if constexpr (!in_pieces) return touch;
-    return touching_of(triangle, part, {0, last_});
+  /// The time until which two parts touch that touch at tau. Of the pieces only those are made that contain the end of
+  /// one before.
+  double leave(const PlacedTriangle& triangle, const Part& part, double tau) const {
+    for (double end = tau;; tau = end) {
+      end = touching_of(triangle, part, {tau, tau}).leave(tau);
+      if (!in_pieces || end == tau || end == TimeSpans::infinity) return end;
+    }
   }
 
   /// The first contact in [tau, limit], or TimeSpans::infinity. Raises `passed_over` to the ends of those before it.
@@ -211,7 +220,7 @@ class Query : private PairTimes<Degree> {
     const PlacedTriangle triangle = a_.triangle({a_.mesh.triangles()[known.triangle_a], known.triangle_a});
     std::optional<MeshTouchPlace> place;
     const auto look = [&](const Part& part) {
-      const Touching touch = touching_of(triangle, part, {0, last_});
+      const Touching touch = touching_of(triangle, part, {tau, tau});
       if (touch.first_inside(tau) != tau || touch.enter(tau) != known.tau) return;
       const TouchDirection here = touch.direction(tau);
       if (here.approaching) place = describe(tau, here, known.triangle_a, known.triangle_b);
@@ -224,23 +233,31 @@ class Query : private PairTimes<Degree> {
     return place;
   }
 
-  /// The end of some contact that holds at tau, preferably a late one; tau itself if there is none.
+  /// The end of some contact that holds at tau; preferably a late one; tau itself if there is none.
   double contact_end(double tau) const {
     double end = tau;
-    slice_by_slice({tau, farthest}, [&](const TimeSlice& slice) {
+    first_touching({tau, farthest},
+                   [&](const PlacedTriangle& triangle, const Part& part) { end = leave(triangle, part, tau); });
+    return end;
+  }
+
+  /// Calls visit(triangle, part) for the first parts found that touch when the window begins, preferably such as are
+  /// near each other for a large part of it.
+  template <class Visit>
+  void first_touching(const TimeWindow& times, const Visit& visit) const {
+    slice_by_slice(times, [&](const TimeSlice& slice) {
+      const double tau = times.begin;
       if (slice.begin > tau) return true;
       AnyAtOnce goal;
       walk(goal, slice,
            [&](std::uint32_t, const PlacedTriangle& triangle, std::uint32_t, const Part& part, TimeWindow window) {
              if (goal.found || !may_touch(triangle, part, motion_, margin_, window) || window.begin > tau) return;
-             const Touching touch = touching_of(triangle, part, {tau, tau});
-             if (touch.first_inside(tau) != tau) return;
-             end = at_all_times(touch, triangle, part).leave(tau);
+             if (touching_of(triangle, part, {tau, tau}).first_inside(tau) != tau) return;
+             visit(triangle, part);
              goal.found = true;
            });
       return true;
     });
-    return end;
   }
 
   MeshTouchPlace describe(double tau, const TouchDirection& direction, std::uint32_t i, std::uint32_t j) const {

@@ -139,29 +139,47 @@ bool ContactGaps<Motion>::renew(Contact& contact) const {
   contact.since = now;
   if (contact.gap > cluster::kept_gap * size(contact)) return false;
   if (on_plane(contact)) return true;
-  const auto a = bodies_.moving(contact.a);
-  const auto b = bodies_.moving(contact.b);
-  const bool round = is_round(a.shape) || is_round(b.shape);
+  const PlacedShape a = bodies_.shape(contact.a);
+  const PlacedShape b = bodies_.shape(contact.b);
+  const bool round = is_round(a) || is_round(b);
   const bool in_places = concave(contact);
   if (round && !in_places) return true;
-  // Faces may have slid off each other. First the nearest places are found, then those that are near.
+  const auto where = place(contact, contact.gap);
+  if (!where) return false;
+  if (!in_places || !round) return true;
+  const auto& [touch, nearer] = *where;
+  contact.normal = touch.normal;
+  // From the surface of the mesh to that of a ball.
+  if (const double of_b = bodies_.mover(contact.b).radius; of_b > 0) {
+    contact.gap = dot(contact.normal, bodies_.path(contact.b).position(now) - touch.point) - of_b;
+  } else if (const double of_a = bodies_.mover(contact.a).radius; of_a > 0) {
+    contact.gap = dot(contact.normal, touch.point - nearer - bodies_.path(contact.a).position(now)) - of_a;
+  }
+  return true;
+}
+
+template <class Motion>
+auto ContactGaps<Motion>::place(const Contact& contact, double gap) const -> std::optional<Place> {
+  const double now = clock_.now;
+  const auto a = bodies_.moving(contact.a);
+  const auto b = bodies_.moving(contact.b);
   for (const double part : {nearest_part, cluster::room_of_many}) {
-    const Vector3d nearer = -(contact.gap + part * size(contact)) * contact.normal;
+    const Vector3d nearer = -(gap + part * size(contact)) * contact.normal;
     const auto motion = moved(b.motion, nearer);
     const MovingShape<Motion> touching{b.shape, motion};
-    if (!in_contact(a, touching, now)) continue;
-    if (!in_places || !round) return true;
-    const collision::Contact touch = contact_at(a, touching, now);
-    contact.normal = touch.normal;
-    // From the surface of the mesh to that of a ball.
-    if (const double of_b = bodies_.mover(contact.b).radius; of_b > 0) {
-      contact.gap = dot(contact.normal, b.motion.position(now) - touch.point) - of_b;
-    } else if (const double of_a = bodies_.mover(contact.a).radius; of_a > 0) {
-      contact.gap = dot(contact.normal, touch.point - nearer - a.motion.position(now)) - of_a;
-    }
-    return true;
+    if (in_contact(a, touching, now)) return Place{contact_at(a, touching, now), nearer};
   }
-  return false;
+  return std::nullopt;
+}
+
+template <class Motion>
+bool ContactGaps<Motion>::on_face(const Contact& contact) const {
+  if (!concave(contact) || !turns(contact)) return false;
+  const auto where = place(contact, along_normal(contact));
+  if (!where) return false;
+  const collision::Contact& touch = where->touch;
+  const Feature& feature = is_round(bodies_.shape(contact.a)) ? touch.feature_b : touch.feature_a;
+  return feature.kind == Feature::Kind::face && dot(touch.normal, contact.normal) >= 1 - 0x1p-40;
 }
 
 template <class Motion>

@@ -32,10 +32,13 @@ class ContactGaps {
   bool on_plane(const Contact& contact) const;
   /// Whether one of the two is a mesh or a compound, not on a plane, whose surface is known only where it touches.
   bool concave(const Contact& contact) const;
-  /// Whether its normal turns while the two slide over each other: one is round, and does not touch a face of a box.
+  /// Whether its normal turns while the two slide over each other: one is round, and the other is concave(), or is not
+  /// touched at a face.
   bool turns(const Contact& contact) const;
   /// turns(), and not concave(): so the normal is known at other places too.
-  bool bends(const Contact& contact) const { return turns(contact) && !concave(contact); }
+  bool bends(const Contact& contact) const { return !concave(contact) && turns(contact); }
+  /// Whether a round body touches a face of one that is concave(), where its normal does not turn.
+  bool on_face(const Contact& contact) const;
 
   /// The rate at which the two part along the normal.
   double parting(const Contact& contact) const;
@@ -62,6 +65,14 @@ class ContactGaps {
   double deepest_overlap(const Contact& contact) const;
 
  private:
+  /// Where the two touch.
+  struct Place {
+    collision::Contact touch;
+    Eigen::Vector3d nearer;  ///< by which b was moved for them to touch
+  };
+  /// Where bodies touch of which one is concave, or has faces that may have slid off the other: first the nearest
+  /// places are found, then those that are near. Nothing if none is.
+  std::optional<Place> place(const Contact& contact, double gap) const;
   /// Most contacts are of two balls, for which a tenth of the work suffices.
   bool balls(const Contact& contact) const;
 

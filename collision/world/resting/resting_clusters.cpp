@@ -17,9 +17,11 @@ bool RestingContacts<Motion>::in_cluster(const Island& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [this](BodySlot id) { return clustered(id); });
 }
 
-/// Whether the normal of any contact turns while bodies slide.
+/// Whether the normal of any contact turns while bodies slide. A ball that slides alone over a mesh does so only where
+/// it leaves a face.
 template <class Motion>
 bool RestingContacts<Motion>::turns(const Island& island) const {
+  if (island.contacts.size() == 1 && gaps_.on_face(contacts_[island.contacts.front()])) return false;
   return std::any_of(island.contacts.begin(), island.contacts.end(),
                      [this](Slot slot) { return gaps_.turns(contacts_[slot]); });
 }
@@ -102,12 +104,12 @@ template <class Motion>
 bool RestingContacts<Motion>::slides_on(const Island& island) const {
   const auto at_wall = [this](Slot slot) { return contacts_[slot].b == no_body; };
   const bool at_walls = std::all_of(island.contacts.begin(), island.contacts.end(), at_wall);
-  if (!at_walls && island.contacts.size() != 1) return false;
+  if (!at_walls && (island.contacts.size() != 1 || turns(island))) return false;
   return std::none_of(island.contacts.begin(), island.contacts.end(), [this](Slot slot) {
     const Contact& contact = contacts_[slot];
     double largest = norm(velocity(contact.a));
     if (contact.b != no_body) largest = std::max(largest, norm(velocity(contact.b)));
-    return gaps_.turns(contact) || gaps_.parting(contact) > rate_rounding * largest;
+    return gaps_.parting(contact) > rate_rounding * largest;
   });
 }
 

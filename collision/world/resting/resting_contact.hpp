@@ -41,6 +41,7 @@ struct RestingContact {
   double aim = 0;         ///< the least gap along the normal when the span ends
   bool proven = true;     ///< a plane stays between the two until the span ends
 
+  bool unfinished = false;   ///< not in a cluster: its end has not been found yet, and is sought on at its release
   std::uint32_t listed = 0;  ///< its place in the list of that of the two that is fixed
 
   // For walks over contacts that lean on each other.
@@ -51,8 +52,8 @@ struct RestingContact {
 /// All of it but its place in a list, and what walks need.
 template <class Archive>
 void archive_members(Archive& archive, RestingContact& c) {
-  archive(c.a, c.b, c.wall, c.push, c.alive, c.fresh, c.proven, c.began, c.left_behind, c.solved, c.depth, c.gap,
-          c.room, c.since, c.aim, c.ends);
+  archive(c.a, c.b, c.wall, c.push, c.alive, c.unfinished, c.fresh, c.proven, c.began, c.left_behind, c.solved, c.depth,
+          c.gap, c.room, c.since, c.aim, c.ends);
   image::vector(archive, c.normal), image::vector(archive, c.point);
 }
 

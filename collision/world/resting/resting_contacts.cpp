@@ -37,6 +37,28 @@ double slack_of(const TranslatingShape<Degree>& a, const TranslatingShape<Degree
   return std::max(slack * size, coordinate_slack * coordinates);
 }
 
+/// How far the end of a contact with a mesh is sought: this many sizes of the smaller body along it.
+constexpr double most_slide = 4;
+
+/// A time in which two bodies move by no more than about twice a distance relative to each other; `never` if they do
+/// not move so.
+template <int Degree>
+double sliding_time(const certificates::PointMotion<Degree>& a, const certificates::PointMotion<Degree>& b, double now,
+                    double distance) {
+  const auto of_a = a.restarted(now).coefficients, of_b = b.restarted(now).coefficients;
+  const auto term = [&](std::size_t k) { return norm(Eigen::Vector3d(of_b[k] - of_a[k])); };
+  double time = distance / term(1);
+  if constexpr (Degree >= 2) time = std::min(time, std::sqrt(distance / term(2)));
+  for (std::size_t k = 3; k <= Degree; ++k) {
+    if (!(term(k) > 0)) continue;
+    time = std::min(time, 1024.0);
+    double power = time;
+    for (std::size_t i = 1; i < k; ++i) power *= time;
+    for (; term(k) * power > distance; time /= 2) power = std::ldexp(power, -static_cast<int>(k));
+  }
+  return time;
+}
+
 }  // namespace
 
 /// The contacts of a body, or of another (or a wall) that has fewer: a floor has many. Precondition: a has a member.
@@ -231,7 +253,8 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
 /// A resting contact ends when the bodies have slid off each other, or have parted by `slack`.
 template <class Motion>
 void RestingContacts<Motion>::schedule_release(Slot slot) {
-  const Contact& contact = contacts_[slot];
+  Contact& contact = contacts_[slot];
+  contact.unfinished = false;
   if (clustered(contact.a) || (contact.b != no_body && clustered(contact.b))) return;  // The cluster's spans end it.
   if (contact.b == no_body) {  // Walls have no edge to slide off.
     if constexpr (Motion::degree >= 3) releases_.set(slot, contact.ends);
@@ -250,8 +273,16 @@ void RestingContacts<Motion>::schedule_release(Slot slot) {
     return Motion::degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
   }
   const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * contact.normal);
-  const double t = first_separation(a, MovingShape<Motion>{b.shape, nearer}, now, clock_.horizon);
-  releases_.set(slot, Motion::degree >= 3 ? std::min(t, contact.ends) : t);
+  // A mesh is followed from triangle to triangle, so no farther than motions are likely to last.
+  double until = clock_.horizon;
+  if (gaps_.concave(contact)) {
+    const double some = now + sliding_time(a.motion, b.motion, now, most_slide * gaps_.size(contact));
+    if (some > now) until = std::min(until, some);
+  }
+  const double t = first_separation(a, MovingShape<Motion>{b.shape, nearer}, now, until);
+  contact.unfinished = !(t <= until) && until < clock_.horizon;
+  const double ends = contact.unfinished ? until : t;
+  releases_.set(slot, Motion::degree >= 3 ? std::min(ends, contact.ends) : ends);
 }
 
 /// The next contact to end. If several of the same two bodies end at one time, the order of their normals decides.
@@ -284,7 +315,10 @@ void RestingContacts<Motion>::process() {
   last_event_.rank = detail::RestingRank{&contacts_, &bodies_.keys()}(slot);
   if (Motion::degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
     part(slot);
-  } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot])) {
+  } else if (contacts_[slot].unfinished) {
+    return schedule_release(slot);
+  } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot]) &&
+             !gaps_.on_face(contacts_[slot])) {
     gather(bodies_.fixed(contacts_[slot].a) ? contacts_[slot].b : contacts_[slot].a);
   } else {
     drop(slot);

@@ -187,7 +187,7 @@ bool RestingContacts<Motion>::drop_broken(const Island& island) {
     const double rate = dot(contact.normal, b - a);
     if (std::abs(rate) <= rate_rounding * largest) continue;
     any = true;
-    if ((rate > 0 || turns(island)) && soon_back(contact, std::abs(rate))) {
+    if (soon_back(contact, std::abs(rate)) && (rate > 0 || turns(island))) {
       gather(island.bodies.front());
       return true;
     }

@@ -1,4 +1,5 @@
 // Balls that fall on one large body and bounce, roll or slide there: what their number adds to the cost of each.
+#include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/speed/report.hpp"
@@ -7,6 +8,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,12 +29,34 @@ struct Floor {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
+/// A mesh of squares with the side 2, of two triangles each, whose vertices lie up to a height above or below 0.
+kds::collision::MeshShape terrain(std::size_t squares, double height) {
+  kds::tests::Random random(5);
+  std::vector<Vector3d> vertices;
+  std::vector<kds::collision::Mesh::Triangle> triangles;
+  const auto row = static_cast<std::uint32_t>(squares + 1);
+  for (std::uint32_t y = 0; y < row; ++y) {
+    for (std::uint32_t x = 0; x < row; ++x) {
+      vertices.emplace_back(2.0 * x, 2.0 * y, random.between(-height, height));
+      if (x == 0 || y == 0) continue;
+      const std::uint32_t corner = y * row + x;
+      triangles.push_back({corner - row - 1, corner - row, corner});
+      triangles.push_back({corner - row - 1, corner, corner - 1});
+    }
+  }
+  return {std::make_shared<const kds::collision::Mesh>(vertices, triangles)};
+}
+
 /// Large enough for side x side balls at distances of 2, from the origin on.
 std::vector<Floor> floors(double side) {
   using kds::collision::Box;
+  const auto squares = static_cast<std::size_t>(1.5 * side);
+  const Vector3d corner(-0.5 * side, -0.5 * side, -2);
   return {{"box", Box{{4 * side, 4 * side, 1}}, {side, side, -2}},
           {"slope", Box{{4 * side, 4 * side, 1}}, {side, side, -6}, Eigen::Quaterniond(1, 0.05, 0.1, 0).normalized()},
-          {"dome", kds::collision::Sphere{10 * side}, {side, side, -10 * side - 2}}};
+          {"dome", kds::collision::Sphere{10 * side}, {side, side, -10 * side - 2}},
+          {"sheet", terrain(squares, 0), corner},
+          {"terrain", terrain(squares, 0.5), corner}};
 }
 
 World<2>::Motion motion(const Vector3d& place, const Vector3d& velocity, const Vector3d& gravity) {
