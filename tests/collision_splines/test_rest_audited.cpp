@@ -30,8 +30,9 @@ std::uint64_t audit_tables(const TableMotions& motions, std::initializer_list<st
 
 }  // namespace
 
-TEST_CASE("Curves: a body that joins a cluster does not curve into it", "[splines][resting]") {
-  CHECK(audit_tables({.curved = true}, {17, 43, 88, 113}) > 50);
+TEST_CASE("Curves: a body that joins a cluster does not curve into it, and none meets a wall without end",
+          "[splines][resting]") {
+  CHECK(audit_tables({.curved = true}, {17, 43, 88, 113, 190}) > 50);
 }
 
 TEST_CASE("Curves: what rests on a ground that curves does not sink in", "[splines][resting]") {
