@@ -110,12 +110,15 @@ double CompoundContact<Motion>::first_contact(const Body& a, const Body& b, doub
                                               FoundTouch*) {
   if (!(t0 <= horizon)) return never;
   double first = never;
-  for (const auto& pair : PairsOf<Motion>(a, b, t0, horizon).in_time()) {
-    const double end = std::min(first, horizon);
-    if (pair.from > end) break;
-    const double start = turns<Motion> ? pair.from : t0;
-    first = std::min(first, PartTests<Motion>(a, b, *pair.a, *pair.b).first_contact(start, end, mode));
-  }
+  PairsOf<Motion> pairs(a, b, t0, horizon);
+  do {
+    for (const auto& pair : pairs.in_time()) {
+      const double end = std::min(first, horizon);
+      if (pair.from > end) break;
+      const double start = turns<Motion> ? pair.from : t0;
+      first = std::min(first, PartTests<Motion>(a, b, *pair.a, *pair.b).first_contact(start, end, mode));
+    }
+  } while (pairs.list_on(first));
   return first;
 }
 
@@ -123,12 +126,15 @@ template <class Motion>
 double CompoundContact<Motion>::apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&) {
   if (!(t0 <= horizon)) return never;
   double first = never;
-  for (const auto& pair : PairsOf<Motion>(a, b, t0, horizon).in_time()) {
-    if (first == t0 || pair.from >= first || pair.from > horizon) break;
-    const double start = turns<Motion> ? pair.from : t0;
-    const double apart = PartTests<Motion>(a, b, *pair.a, *pair.b).apart_until(start, horizon);
-    first = std::min(first, std::max(apart, pair.from));
-  }
+  PairsOf<Motion> pairs(a, b, t0, horizon);
+  do {
+    for (const auto& pair : pairs.in_time()) {
+      if (first == t0 || pair.from >= first || pair.from > horizon) break;
+      const double start = turns<Motion> ? pair.from : t0;
+      const double apart = PartTests<Motion>(a, b, *pair.a, *pair.b).apart_until(start, horizon);
+      first = std::min(first, std::max(apart, pair.from));
+    }
+  } while (pairs.list_on(first));
   return first;
 }
 
@@ -143,10 +149,10 @@ bool CompoundContact<Motion>::in_contact(const Body& a, const Body& b, double t)
 template <class Motion>
 double CompoundContact<Motion>::first_separation(const Body& a, const Body& b, double t0, double horizon) {
   if (!(t0 <= horizon)) return never;
-  const PairsOf<Motion> pairs(a, b, t0, horizon);
+  PairsOf<Motion> pairs(a, b, t0, horizon);
   double t = t0;
   for (bool moved = true; moved && t != never;) {
-    moved = false;
+    moved = pairs.list_on(t);
     for (const auto& pair : pairs.all()) {
       if (t < pair.from || t > pair.until) continue;
       const PartTests<Motion> parts(a, b, *pair.a, *pair.b);

@@ -17,8 +17,9 @@ namespace kds::collision {
 /// in contact and approach; if none approaches, of the first pair in contact; if none is in contact, of the first pair
 /// that was in contact until then, else of the nearest pair. Its features are those of the two parts.
 ///
-/// Cost: a few roots in doubles for each pair of parts (PartPairs; of bodies that turn TurningPartPairs), and the tests
-/// of those whose boxes, or balls, meet.
+/// Cost: a few roots in doubles for each pair of parts, or, where there are many, for each pair of groups of parts that
+/// come near each other (PartTree, PartPairs; of bodies that turn TurningPartPairs), and the tests of those whose
+/// boxes, or balls, meet.
 template <class Motion>
 struct CompoundContact {
   using Body = MovingShape<Motion>;

@@ -5,11 +5,14 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/shapes/part_tree.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
@@ -18,6 +21,77 @@ namespace kds::collision {
 inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
   if (shape.parts) return *shape.parts;
   return {&shape, 1};
+}
+
+/// The parts of a shape in groups of groups: those of its tree, or a single one.
+class PartGroups {
+ public:
+  explicit PartGroups(const PlacedShape& shape) : shape_(shape), tree_(part_tree(shape)) {
+    if (tree_ && !shape.rotation.isIdentity(0)) rotation_ = shape.rotation.cwiseAbs();
+  }
+
+  bool has_tree() const { return tree_ != nullptr; }
+  const PlacedShape& shape() const { return shape_; }
+  /// Precondition, here and below where a node is returned: there is a tree.
+  const PartTree::Node& node(std::uint32_t group) const { return tree_->nodes()[group]; }
+  bool is_leaf(std::uint32_t group) const { return !tree_ || node(group).is_leaf(); }
+  std::uint32_t first_child(std::uint32_t group) const { return node(group).first; }
+
+  /// Around the boxes of its parts, in the axes of the world; `least` and `greatest` corner. A box that is turned is
+  /// held by one that is larger; 2^-40 of the size of the shape is far above the roundings of that.
+  std::array<Eigen::Vector3d, 2> box(std::uint32_t group) const {
+    if (group == 0) return {shape_.low, shape_.high};
+    const PartTree::Node& at = node(group);
+    if (rotation_.isZero(0)) return {at.low, at.high};
+    const Eigen::Vector3d centre = shape_.rotation * (0.5 * (at.low + at.high));
+    const Eigen::Vector3d half =
+        rotation_ * (0.5 * (at.high - at.low)) + Eigen::Vector3d::Constant(0x1p-40 * shape_.bounding_radius);
+    return {centre - half, centre + half};
+  }
+
+  /// Calls take(number) for the parts of a leaf.
+  template <class Take>
+  void each_part(std::uint32_t leaf, const Take& take) const {
+    if (tree_) {
+      for (const std::uint32_t part : tree_->parts_of(node(leaf))) take(part);
+    } else {
+      const auto count = static_cast<std::uint32_t>(parts_of(shape_).size());
+      for (std::uint32_t part = 0; part < count; ++part) take(part);
+    }
+  }
+
+ private:
+  const PlacedShape& shape_;
+  const PartTree* tree_;
+  Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Zero();  ///< magnitudes; zero of a shape that is not turned
+};
+
+/// The numbers of the parts, in the order of those of a, then of b, in all groups of which may_meet(group of a, group
+/// of b) is true.
+template <class MayMeet>
+std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_in_groups(const PartGroups& a, const PartGroups& b,
+                                                                     const MayMeet& may_meet) {
+  const auto size = [](const PartGroups& groups, std::uint32_t group) {
+    return groups.is_leaf(group) ? -1 : squared_norm(groups.node(group).high - groups.node(group).low);
+  };
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found, waiting{{0, 0}};
+  while (!waiting.empty()) {
+    const auto [of_a, of_b] = waiting.back();
+    waiting.pop_back();
+    if (!may_meet(of_a, of_b)) continue;
+    const double size_a = size(a, of_a), size_b = size(b, of_b);
+    if (size_a < 0 && size_b < 0) {
+      a.each_part(of_a, [&](std::uint32_t part_a) {
+        b.each_part(of_b, [&](std::uint32_t part_b) { found.emplace_back(part_a, part_b); });
+      });
+    } else if (size_a >= size_b) {
+      for (std::uint32_t child = 0; child < 2; ++child) waiting.emplace_back(a.first_child(of_a) + child, of_b);
+    } else {
+      for (std::uint32_t child = 0; child < 2; ++child) waiting.emplace_back(of_a, b.first_child(of_b) + child);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
 }
 
 /// Pairs of parts that may meet, and from when to when.
@@ -34,15 +108,18 @@ class ListOfPartPairs {
   /// In the order of the parts of a, then of b.
   std::span<const Pair> all() const& { return pairs_; }
   std::span<const Pair> all() const&& = delete;  // it refers to this
-  /// The same, by `from`.
+  /// The same, by `from`; of a list that is made piece by piece those of the last piece.
   std::vector<Pair> in_time() const {
     std::vector<Pair> sorted = pairs_;
+    if (listed_before_ != -never)
+      std::erase_if(sorted, [this](const Pair& pair) { return pair.from <= listed_before_; });
     std::stable_sort(sorted.begin(), sorted.end(), [](const Pair& x, const Pair& y) { return x.from < y.from; });
     return sorted;
   }
 
  protected:
   std::vector<Pair> pairs_;
+  double listed_before_ = -never;
 };
 
 /// The pairs of parts of two bodies whose boxes may overlap at some time from now to the horizon, in the order of the
@@ -51,8 +128,14 @@ class ListOfPartPairs {
 /// Boxes of meshes are as far apart as ContactGap reports contact, at the end of the time that is looked at.
 /// Half-spaces and meshes that bend are not looked at: they may meet each part at all times.
 ///
-/// Cost: for each part of a at most six roots of QuickMotion, and for those whose boxes meet the box around all of b
-/// within the time as many for each part of b.
+/// Where a body has a tree of parts, the boxes of groups are looked at first, grown by four times the error bound of
+/// QuickMotion: what it answers of a part is true of any group that has it. So the list is the one that a look at each
+/// part makes. (Degree 3 and above: but for parts whose boxes do not meet, for which bounds were too wide.) Of bodies
+/// that move so little relative to each other that QuickMotion cannot tell that they part for good, each part is looked
+/// at.
+///
+/// Cost: for each part of a, or of those groups, at most six roots of QuickMotion, and for those whose boxes meet the
+/// box around all of b within the time as many for each part of b; as many for each group.
 template <int Degree>
 class PartPairs : public ListOfPartPairs {
  public:
@@ -69,6 +152,15 @@ class PartPairs : public ListOfPartPairs {
       mesh_margin_ = quick_margin * contact_gap(motion, a.shape.bounding_radius + b.shape.bounding_radius)(
                                         std::max(now - motion.epoch, 0.0) + motion_.end());
     }
+    const PartGroups groups_a(a.shape), groups_b(b.shape);
+    whole_ = motion_.whole();
+    if (boxes && (groups_a.has_tree() || groups_b.has_tree())) {
+      whole_ = whole_ || stand_to_each_other(a.motion, b.motion);
+      if (whole_) {
+        look_at_groups(groups_a, groups_b, now);
+        return;
+      }
+    }
     for (const PlacedShape& part_a : parts_of(a.shape)) {
       Pair pair{&part_a, &b.shape, now, never};
       if (boxes && !clip(pair)) continue;
@@ -79,7 +171,43 @@ class PartPairs : public ListOfPartPairs {
     }
   }
 
+  /// Lists more pairs if some that meet by this time are not yet listed; else false.
+  static constexpr bool list_on(double) { return false; }
+
  private:
+  /// Whether the way between two bodies never changes.
+  static bool stand_to_each_other(const certificates::PointMotion<Degree>& a,
+                                  const certificates::PointMotion<Degree>& b) {
+    bool curved = false;
+    for (std::size_t i = 1; i <= Degree; ++i) {
+      if (a.coefficients[i] != b.coefficients[i]) return false;
+      curved = curved || (i >= 2 && !a.coefficients[i].isZero(0));
+    }
+    return !curved || a.start == b.start;
+  }
+
+  void look_at_groups(const PartGroups& a, const PartGroups& b, double now) {
+    const double grown = 4 * motion_.error() + mesh_margin_;
+    const auto may_meet = [&](std::uint32_t of_a, std::uint32_t of_b) {
+      const auto [low_a, high_a] = a.box(of_a);
+      const auto [low_b, high_b] = b.box(of_b);
+      TimeWindow window{0, motion_.end()};
+      return boxes_meet(low_a, high_a, low_b, high_b, grown, window);
+    };
+    const std::span<const PlacedShape> parts_a = parts_of(a.shape()), parts_b = parts_of(b.shape());
+    const PlacedShape* last = nullptr;
+    bool meets = false;  // `last` and all of b
+    for (const auto& [place_a, place_b] : pairs_in_groups(a, b, may_meet)) {
+      if (last != &parts_a[place_a]) {
+        last = &parts_a[place_a];
+        Pair with_all{last, &b.shape(), now, never};
+        meets = clip(with_all);
+      }
+      Pair pair{last, &parts_b[place_b], now, never};
+      if (meets && clip(pair)) pairs_.push_back(pair);
+    }
+  }
+
   static double sizes(const PlacedShape& a, const PlacedShape& b) {
     return (unbounded(a.shape) ? 0 : a.bounding_radius) + (unbounded(b.shape) ? 0 : b.bounding_radius);
   }
@@ -99,21 +227,29 @@ class PartPairs : public ListOfPartPairs {
     const bool mesh = has_mesh(pair.a->shape) || has_mesh(pair.b->shape);
     const double margin = mesh ? mesh_margin_ : 0;
     TimeWindow window{0, motion_.end()};
-    bool meet = true;
-    for (std::size_t d = 0; d < 3 && meet; ++d) {
-      const auto axis = static_cast<Eigen::Index>(d);
-      meet = motion_.clip(along_[d], 1, pair.a->high[axis] - pair.b->low[axis] + margin, window) &&
-             motion_.clip(along_[d], -1, pair.b->high[axis] - pair.a->low[axis] + margin, window);
-    }
-    if (!meet && motion_.whole()) return false;
+    const bool meet = boxes_meet(pair.a->low, pair.a->high, pair.b->low, pair.b->high, margin, window);
+    if (!meet && whole_) return false;
     pair.from = motion_.time_before(meet ? window.begin : motion_.end());
     pair.until = meet && motion_.whole() && window.end < motion_.end() ? motion_.time_after(window.end) : never;
     return true;
   }
 
+  /// Shrinks the window to times at which two boxes, grown by a margin, may overlap; false if there are none.
+  bool boxes_meet(const Eigen::Vector3d& low_a, const Eigen::Vector3d& high_a, const Eigen::Vector3d& low_b,
+                  const Eigen::Vector3d& high_b, double margin, TimeWindow& window) const {
+    bool meet = true;
+    for (std::size_t d = 0; d < 3 && meet; ++d) {
+      const auto axis = static_cast<Eigen::Index>(d);
+      meet = motion_.clip(along_[d], 1, high_a[axis] - low_b[axis] + margin, window) &&
+             motion_.clip(along_[d], -1, high_b[axis] - low_a[axis] + margin, window);
+    }
+    return meet;
+  }
+
   QuickMotion<Degree> motion_;
   std::array<typename QuickMotion<Degree>::Along, 3> along_;
   double mesh_margin_ = 0;
+  bool whole_ = true;  ///< what does not meet until the end of the motion's answers does not meet after it
 };
 
 }  // namespace kds::collision

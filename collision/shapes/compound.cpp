@@ -1,11 +1,13 @@
 #include "collision/shapes/compound.hpp"
 
 #include "collision/shapes/mesh_shape.hpp"
+#include "collision/shapes/part_tree.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 #include <variant>
 
 namespace kds::collision {
@@ -67,6 +69,65 @@ CompoundParts::CompoundParts(std::vector<Shape> parts) : parts_(std::move(parts)
     if (!mesh && !std::holds_alternative<ConvexHull>(part)) refuse_kind(i, part, "hulls and meshes");
     if (mesh && mesh->scale != 1) throw InvalidCompound("scale: must be 1", i);
     has_mesh_ = has_mesh_ || mesh;
+  }
+  if (parts_.size() > PartTree::leaf_size) tree_ = std::make_shared<const PartTree>(parts_);
+}
+
+PartTree::PartTree(std::span<const Shape> parts) {
+  std::vector<PlacedShape> placed;
+  placed.reserve(parts.size());
+  for (const Shape& part : parts) {
+    try {
+      placed.push_back(place_turned(part, Eigen::Matrix3d::Identity()));
+    } catch (const std::invalid_argument& error) {
+      throw InvalidCompound(error.what(), placed.size());
+    }
+  }
+  order_.resize(parts.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  build(placed);
+}
+
+void PartTree::build(std::span<const PlacedShape> parts) {
+  const auto around = [&](std::uint32_t first, std::uint32_t count) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double rounded_up = 1 + 0x1p-40;
+    Node node{Vector3d::Constant(infinity), Vector3d::Constant(-infinity), Vector3d::Zero(), 0, 0, first, count};
+    const std::span<const std::uint32_t> group(order_.data() + first, count);
+    for (const std::uint32_t i : group) {
+      node.low = node.low.cwiseMin(parts[i].low);
+      node.high = node.high.cwiseMax(parts[i].high);
+    }
+    node.centre = 0.5 * (node.low + node.high);
+    for (const std::uint32_t i : group) {
+      const BallOfPart ball(parts[i]);
+      node.radius = std::max(node.radius, (norm(ball.centre - node.centre) + ball.radius) * rounded_up);
+      node.reach = std::max(node.reach, norm(ball.centre) * rounded_up);
+    }
+    return node;
+  };
+  nodes_.push_back(around(0, static_cast<std::uint32_t>(order_.size())));
+  for (std::size_t at = 0; at < nodes_.size(); ++at) {  // those that follow are its children's
+    const auto [first, count] = std::pair(nodes_[at].first, nodes_[at].count);
+    const auto begin = order_.begin() + first, end = begin + count;
+    if (count <= leaf_size) {
+      std::sort(begin, end);
+      continue;
+    }
+    const auto centre = [&](std::uint32_t i) -> Vector3d { return parts[i].low + parts[i].high; };
+    Vector3d low = centre(*begin), high = low;
+    std::for_each(begin, end, [&](std::uint32_t i) { low = low.cwiseMin(centre(i)), high = high.cwiseMax(centre(i)); });
+    Eigen::Index axis = 0;
+    (high - low).maxCoeff(&axis);
+    const std::uint32_t half = count / 2;
+    std::nth_element(begin, begin + half, end, [&](std::uint32_t i, std::uint32_t j) {
+      const double x = centre(i)[axis], y = centre(j)[axis];
+      return x != y ? x < y : i < j;
+    });
+    nodes_[at].first = static_cast<std::uint32_t>(nodes_.size());
+    nodes_[at].count = 0;
+    nodes_.push_back(around(first, half));
+    nodes_.push_back(around(first + half, count - half));
   }
 }
 
@@ -160,15 +221,17 @@ Compound compound_of_points(std::vector<PartPoints> parts) {
       if (part.triangles.empty()) {
         shapes.push_back(convex_hull(std::move(part.points)));
       } else {
-        shapes.push_back(
-            MeshShape{std::make_shared<const Mesh>(std::move(part.points), std::move(part.triangles))});
+        shapes.push_back(MeshShape{std::make_shared<const Mesh>(std::move(part.points), std::move(part.triangles))});
       }
     }
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error("snapshot: a compound: part " + std::to_string(shapes.size()) + ": " + error.what());
   }
-  if (shapes.empty()) throw std::runtime_error("snapshot: a compound: has no parts");
-  return {std::make_shared<const CompoundParts>(std::move(shapes))};
+  try {
+    return {std::make_shared<const CompoundParts>(std::move(shapes))};
+  } catch (const InvalidCompound& error) {
+    throw std::runtime_error(std::string("snapshot: a ") + error.what());
+  }
 }
 
 }  // namespace detail

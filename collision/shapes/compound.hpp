@@ -20,6 +20,8 @@
 
 namespace kds::collision {
 
+class PartTree;
+
 /// Parts that make no compound. The message names what is wrong; `part` is the number of the wrong part, from 0, if
 /// there is one: then it begins "compound: part 3: ".
 class InvalidCompound : public std::invalid_argument {
@@ -47,15 +49,19 @@ struct CompoundPart {
 /// from each other. Faces that lie inside of the whole, where parts touch, are faces all the same.
 class CompoundParts {
  public:
-  /// Throws InvalidCompound if there is none, or one is neither a hull nor a mesh of scale 1.
+  /// Throws InvalidCompound if there is none, or one is neither a hull nor a mesh of scale 1, or, of those with a tree,
+  /// cannot be placed.
   explicit CompoundParts(std::vector<Shape> parts);
 
   std::span<const Shape> parts() const { return parts_; }
   bool has_mesh() const { return has_mesh_; }
+  /// Boxes around groups of parts; null of a few parts (part_tree.hpp).
+  const PartTree* tree() const { return tree_.get(); }
 
  private:
   std::vector<Shape> parts_;
   bool has_mesh_ = false;
+  std::shared_ptr<const PartTree> tree_;
 };
 
 /// The compound of the parts. Each becomes a hull or a mesh of its points turned, moved by the position, and rounded:

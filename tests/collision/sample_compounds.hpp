@@ -5,6 +5,8 @@
 #include "tests/collision/random_scenes.hpp"
 
 #include <cstddef>
+#include <memory>
+#include <variant>
 #include <vector>
 
 namespace kds::collision::tests {
@@ -47,6 +49,17 @@ inline std::vector<CompoundPart> random_parts(Random& random, Parts kinds, std::
 
 inline Compound random_compound(Random& random, Parts kinds, std::size_t count, double half_side = 1) {
   return compound(random_parts(random, kinds, count, half_side));
+}
+
+/// A placed compound whose parts are looked at one by one, without their tree.
+inline PlacedShape without_tree(PlacedShape placed) {
+  const auto& whole = *std::get<Compound>(placed.shape).parts;
+  for (const Shape& part : whole.parts()) {
+    const bool typical = std::holds_alternative<MeshShape>(part) == whole.has_mesh();  // which says has_mesh(shape)
+    if (typical) placed.shape = Compound{std::make_shared<const CompoundParts>(std::vector<Shape>{part})};
+    if (typical) break;
+  }
+  return placed;
 }
 
 /// A scene of SceneMaker in which every other body is a compound.

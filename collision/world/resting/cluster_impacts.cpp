@@ -140,7 +140,8 @@ class RestingContacts<Motion>::Neighbourhood {
     if (turned_[i]) turn(touch, contact, spans_[i]);
     touch.normal = contact.normal;
     const double falls = all_.gaps_.along_normal(contact) - contact.aim;
-    touch.least = least_acceleration(falls, parting_rate(velocities, touch), spans_[i]);
+    const double bending = all_.gaps_.beyond_parabola(contact, touch.normal, spans_[i]);
+    touch.least = least_acceleration(falls, parting_rate(velocities, touch) + bending / spans_[i], spans_[i]);
   }
 
   /// Whether the distance that a contact slides in the span has changed by enough to matter.
@@ -324,6 +325,8 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
     Motion motion = before;
     motion.coefficients[1] = near.velocities[i];
     if constexpr (Motion::degree >= 2) motion.coefficients[2] = near.halves[i];
+    // A body that has just joined a cluster moves on a parabola as all of it do: the span is proven for that.
+    for (std::size_t k = 3; k <= Motion::degree && clustered(id); ++k) motion.coefficients[k] = Vector3d::Zero();
     if (!(motion == before)) listener_->take_up(id, motion);
   }
   if (!solved && slot == none) add_to_cluster(contact);  // Bodies that are squeezed do not bounce.

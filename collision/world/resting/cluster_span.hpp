@@ -93,7 +93,8 @@ class RestingContacts<Motion>::Span {
       halves = free;
       for (std::size_t k = 0; k < touches_.size(); ++k) {
         const Contact& contact = this->contact(k);
-        const double rate = parting_rate(velocities, touches_[k]);
+        const double bending = all_.gaps_.beyond_parabola(contact, touches_[k].normal, length);
+        const double rate = parting_rate(velocities, touches_[k]) + bending / length;
         touches_[k].least = cluster::least_acceleration(cluster::closing(contact, contact.gap), rate, length);
         touches_[k].push = contact.push;
         at_least_[k] = std::min(touches_[k].least, -rate / length);
@@ -115,8 +116,9 @@ class RestingContacts<Motion>::Span {
     }
   }
 
-  /// If there is no solution all bodies get one velocity and one acceleration, which no contact forbids: those of the
-  /// fixed bodies that they lean on, or the means by mass if there are none.
+  /// If there is no solution all bodies get one motion, which no contact forbids: that of the fixed bodies that they
+  /// lean on, or the means of velocity and acceleration by mass if there are none. Where fixed bodies move in different
+  /// ways it is that of the first which keeps them clear of the others, and contacts with those are not proven.
   void move_as_one() {
     const auto wall = island_.bodies.size();
     const bool at_wall = std::any_of(island_.contacts.begin(), island_.contacts.end(),
@@ -124,7 +126,9 @@ class RestingContacts<Motion>::Span {
     Vector3d rate = Vector3d::Zero();
     Vector3d half = Vector3d::Zero();
     if (island_.free < wall) {
-      rate = velocities[island_.free], half = halves[island_.free];
+      const std::size_t first = clear_carrier();
+      carrier = island_.bodies[first];
+      rate = velocities[first], half = halves[first];
     } else if (!at_wall) {
       double mass = 0;
       for (const BodySlot id : island_.bodies) {
@@ -137,11 +141,16 @@ class RestingContacts<Motion>::Span {
     }
     for (std::size_t i = 0; i < island_.free; ++i) velocities[i] = rate, halves[i] = half;
     proven_.assign(touches_.size(), 1);
-    for (const Slot slot : island_.contacts) {
-      Contact& contact = all_.contacts_[slot];
+    for (std::size_t k = 0; k < touches_.size(); ++k) {
+      Contact& contact = this->contact(k);
       contact.push = 0;
       contact.aim = contact.gap;
+      proven_[k] = contact.b == no_body || (moves_alike(touches_[k].a) && moves_alike(touches_[k].b));
     }
+  }
+  /// Whether all contacts are proven.
+  bool keeps_apart() const {
+    return std::all_of(proven_.begin(), proven_.end(), [](char proven) { return proven != 0; });
   }
 
   void prove() {
@@ -151,6 +160,7 @@ class RestingContacts<Motion>::Span {
   double length;  ///< s; `never` if nothing accelerates the bodies
   std::vector<Vector3d> velocities;
   std::vector<Vector3d> halves;
+  BodySlot carrier = no_body;  ///< of move_as_one(): the fixed body with which all move
 
  private:
   Contact& contact(std::size_t k) { return all_.contacts_[island_.contacts[k]]; }
@@ -216,7 +226,48 @@ class RestingContacts<Motion>::Span {
 
   /// How far b moves relative to a in a time.
   Vector3d displacement(const Touch& touch, double time) const {
-    return (velocities[touch.b] - velocities[touch.a]) * time + (halves[touch.b] - halves[touch.a]) * (time * time);
+    Vector3d way = (velocities[touch.b] - velocities[touch.a]) * time;
+    way += (halves[touch.b] - halves[touch.a]) * (time * time);
+    if constexpr (Motion::degree >= 3) way += higher_terms(touch.b, time) - higher_terms(touch.a, time);
+    return way;
+  }
+
+  /// How far the terms above the second degree move a fixed body; no others have any.
+  Vector3d higher_terms(std::uint32_t place, double time) const {
+    Vector3d way = Vector3d::Zero();
+    if (place < island_.free || place >= island_.bodies.size()) return way;
+    const auto motion = all_.bodies_.path(island_.bodies[place]).restarted(all_.clock_.now);
+    for (std::size_t i = Motion::degree; i >= 3; --i) way = (way + motion.coefficients[i]) * time;
+    return way * (time * time);
+  }
+
+  /// The place of the first fixed body whose motion leads into no other fixed body or wall that is touched; if there is
+  /// none, of the one whose motion does so most slowly.
+  std::size_t clear_carrier() const {
+    std::size_t best = island_.free;
+    double greatest = -never;
+    for (std::size_t i = island_.free; i < island_.bodies.size(); ++i) {
+      double least = 0;
+      for (const Touch& touch : touches_) {
+        const auto velocity = [&](std::uint32_t place) { return velocities[place < island_.free ? i : place]; };
+        least = std::min(least, dot(touch.normal, velocity(touch.b) - velocity(touch.a)));
+      }
+      if (least > greatest) greatest = least, best = i;
+    }
+    return best;
+  }
+
+  /// Whether a body moves as the carrier does, up to rounding, or is one that it carries.
+  bool moves_alike(std::uint32_t place) const {
+    if (place < island_.free || carrier == no_body) return true;
+    const double now = all_.clock_.now;
+    const auto of_carrier = all_.bodies_.path(carrier).restarted(now);
+    const auto of_body = all_.bodies_.path(island_.bodies[place]).restarted(now);
+    for (std::size_t i = 1; i <= Motion::degree; ++i) {
+      const Vector3d &x = of_carrier.coefficients[i], &y = of_body.coefficients[i];
+      if (!(norm(x - y) <= rate_rounding * norm(x))) return false;
+    }
+    return true;
   }
 
   /// False if the paths would end nearer to each other than follows from the normals with which they were computed.

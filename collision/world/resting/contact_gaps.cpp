@@ -24,6 +24,21 @@ certificates::PointMotion<Degree> moved(certificates::PointMotion<Degree> motion
   return motion;
 }
 
+/// The least Bernstein coefficient on [0, 1] of a polynomial, constant first, which is nowhere lower there.
+template <std::size_t Size>
+double least_bernstein_coefficient(const std::array<double, Size>& polynomial) {
+  double least = polynomial[0];
+  for (std::size_t j = 1; j < Size; ++j) {
+    double sum = 0, part = 1;  // of the term i: (j over i) / (degree over i)
+    for (std::size_t i = 0; i <= j; ++i) {
+      sum += part * polynomial[i];
+      part *= static_cast<double>(j - i) / static_cast<double>(Size - 1 - i);
+    }
+    least = std::min(least, sum);
+  }
+  return least;
+}
+
 /// By how much a mesh is moved nearer to find the nearest places, as a part of their size.
 constexpr double nearest_part = 0x1p-26;
 
@@ -183,9 +198,42 @@ bool ContactGaps<Motion>::on_face(const Contact& contact) const {
 }
 
 template <class Motion>
+std::array<double, Motion::degree + std::size_t{1}> ContactGaps<Motion>::higher_terms(const Contact& contact,
+                                                                                      const Vector3d& normal,
+                                                                                      double span) const {
+  std::array<double, Motion::degree + std::size_t{1}> terms{};
+  if constexpr (Motion::degree >= 3) {
+    for (const BodySlot id : {contact.a, contact.b}) {
+      if (id == no_body || !bodies_.fixed(id)) continue;
+      const Motion motion = bodies_.path(id).restarted(clock_.now);
+      double power = span * span * (id == contact.a ? -1 : 1);
+      for (std::size_t i = 3; i <= Motion::degree; ++i) {
+        power *= span;
+        terms[i] += power * dot(normal, motion.coefficients[i]);
+      }
+    }
+  }
+  return terms;
+}
+
+template <class Motion>
+double ContactGaps<Motion>::beyond_parabola(const Contact& contact, const Vector3d& normal, double span) const {
+  double sum = 0;
+  for (const double term : higher_terms(contact, normal, span)) sum += term;
+  return sum;
+}
+
+template <class Motion>
 bool ContactGaps<Motion>::proven(const Contact& contact, double rate, double half, double span) const {
   if (contact.b == no_body) return true;
   const double gap = along_normal(contact) + cluster::rounding * size(contact);
+  if constexpr (Motion::degree >= 3) {
+    auto terms = higher_terms(contact, contact.normal, span);
+    if (std::any_of(terms.begin(), terms.end(), [](double term) { return term != 0; })) {
+      terms[0] = gap, terms[1] = rate * span, terms[2] = half * span * span;
+      return least_bernstein_coefficient(terms) >= 0;
+    }
+  }
   return gap >= 0 && gap + (rate + std::min(half, 0.0) * span) * span >= 0;
 }
 

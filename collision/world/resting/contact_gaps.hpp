@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cstddef>
 #include <optional>
 
 namespace kds::collision {
@@ -52,8 +54,13 @@ class ContactGaps {
   /// Recomputes gap and normal. False if the contact has ended.
   bool renew(Contact& contact) const;
 
+  /// How much farther apart along a normal the two are after `span` seconds for the terms above the second degree that
+  /// fixed bodies move by: bodies of a cluster have none.
+  double beyond_parabola(const Contact& contact, const Eigen::Vector3d& normal, double span) const;
+
   /// Whether a plane across the normal certainly stays between the two for `span` seconds, in which they part at a rate
-  /// and with half an acceleration: there is a gap now, and the parabola of the gap is above zero at the end.
+  /// and with half an acceleration: there is a gap now, and the parabola of the gap is above zero at the end. Where a
+  /// fixed body moves by higher terms the Bernstein coefficients of the gap in that time are above zero.
   bool proven(const Contact& contact, double rate, double half, double span) const;
 
   /// How far the two overlap; 0 if concave(), where it is not known.
@@ -73,6 +80,9 @@ class ContactGaps {
   /// Where bodies touch of which one is concave, or has faces that may have slid off the other: first the nearest
   /// places are found, then those that are near. Nothing if none is.
   std::optional<Place> place(const Contact& contact, double gap) const;
+  /// The terms of beyond_parabola() by their order, each times its power of the span.
+  std::array<double, Motion::degree + std::size_t{1}> higher_terms(const Contact& contact,
+                                                                   const Eigen::Vector3d& normal, double span) const;
   /// Most contacts are of two balls, for which a tenth of the work suffices.
   bool balls(const Contact& contact) const;
 

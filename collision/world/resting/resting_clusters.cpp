@@ -79,7 +79,14 @@ void RestingContacts<Motion>::gather(BodySlot id, double ends) {
     if (contact.b != no_body && !gaps_.turns(contact)) continue;
     contact.room = (gaps_.bends(contact) ? room_of_curves : room_of_planes) * gaps_.size(contact);
   }
-  if (ends > clock_.now && !woken) {
+  // A span that has begun is proven for bodies that move on parabolas.
+  const bool on_parabolas = std::all_of(
+      island.bodies.begin(), island.bodies.begin() + static_cast<std::ptrdiff_t>(island.free), [this](BodySlot each) {
+        const auto& terms = bodies_.path(each).coefficients;
+        return std::all_of(terms.begin() + std::min<std::ptrdiff_t>(3, std::ssize(terms)), terms.end(),
+                           [](const Vector3d& term) { return term.isZero(0); });
+      });
+  if (ends > clock_.now && !woken && on_parabolas) {
     set_span(island.bodies.front(), ends);
   } else {
     disturb(id);
@@ -183,7 +190,7 @@ void RestingContacts<Motion>::take_up(const Island& island, Span& span, double l
     of_[id].span_ends = clock_.now + length;
     of_[id].disturbed = false;
     const Vector3d still = Vector3d::Zero();
-    move(id, sleeps ? still : span.velocities[i], sleeps ? still : span.halves[i]);
+    move(id, sleeps ? still : span.velocities[i], sleeps ? still : span.halves[i], sleeps ? no_body : span.carrier);
     if (id < spans_.slots()) spans_.clear(id);
   }
   if (sleeps) return;
@@ -200,15 +207,22 @@ void RestingContacts<Motion>::halt(BodySlot id) {
   Span span(*this, island);
   if (span.length == never) return;
   span.move_as_one();
+  if (!span.keeps_apart() && let_pass_worst(island, span.velocities)) return;
   take_up(island, span, span.length);
 }
 
+/// `carrier`: a fixed body by whose terms of higher order it moves too, or no_body.
 template <class Motion>
-void RestingContacts<Motion>::move(BodySlot id, const Vector3d& velocity, const Vector3d& half_acceleration) {
+void RestingContacts<Motion>::move(BodySlot id, const Vector3d& velocity, const Vector3d& half_acceleration,
+                                   BodySlot carrier) {
   Motion motion = bodies_.motion(id).restarted(clock_.now);
   motion.coefficients[1] = velocity;
   for (std::size_t i = 2; i <= Motion::degree; ++i) motion.coefficients[i] = Vector3d::Zero();
   if constexpr (Motion::degree >= 2) motion.coefficients[2] = half_acceleration;
+  if (Motion::degree >= 3 && carrier != no_body) {
+    const Motion of_carrier = bodies_.path(carrier).restarted(clock_.now);
+    for (std::size_t i = 3; i <= Motion::degree; ++i) motion.coefficients[i] = of_carrier.coefficients[i];
+  }
   if (!(motion == bodies_.motion(id))) listener_->take_up(id, motion);
 }
 

@@ -296,7 +296,7 @@ class RestingContacts {
   void dissolve(const Island& island);
   void set_span(BodySlot first, double ends);
   void set_proven(Contact& contact, bool proven);
-  void move(BodySlot id, const Eigen::Vector3d& velocity, const Eigen::Vector3d& half_acceleration);
+  void move(BodySlot id, const Eigen::Vector3d& velocity, const Eigen::Vector3d& half_acceleration, BodySlot carrier);
   Eigen::Vector3d velocity(BodySlot id) const;
   Eigen::Vector3d acceleration(BodySlot id) const;
   double longest_span(BodySlot id) const;

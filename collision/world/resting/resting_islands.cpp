@@ -288,6 +288,13 @@ bool RestingContacts<Motion>::constrain_curves(Island& island, std::vector<Motio
         pressed[k] = pressed[k] || real;
       }
       for (std::size_t i = 0; i < island.free; ++i) motions[i].coefficients[order] = rates[i];
+      // What is left of a term along a wall is a rounding, which would lead out of the domain at once.
+      for (std::size_t k = 0; k < count; ++k) {
+        const Contact& contact = contacts_[island.contacts[k]];
+        if (contact.b != no_body || touches[k].a >= island.free) continue;
+        double& term = motions[touches[k].a].coefficients[order][contact.wall / 2];
+        if (std::abs(term) <= rate_rounding * largest) term = 0;
+      }
     }
     for (std::size_t k = 0; k < count; ++k) {
       contacts_[island.contacts[k]].ends =

@@ -1,5 +1,5 @@
 // How fast the engine is: against other libraries, against its own methods, by size, by rate, in a gas, on floors, on
-// large models.
+// large models, on compounds of many parts.
 //
 //     bench_speed DIRECTORY [--quick] [PART...]     all parts if none is named; they stand in the list below
 //
@@ -29,10 +29,11 @@ struct Part {
 };
 
 const std::vector<Part> parts{
-    {"peers", measure_peers},   {"arena", measure_arena},         {"rings", measure_rings},
-    {"cells", measure_cells},   {"growth", measure_growth},       {"gas", measure_gas},
-    {"floors", measure_floors}, {"models", measure_models},       {"threads", measure_threads},
-    {"bodies", measure_bodies}, {"frequency", measure_frequency}, {"one-hertz", measure_one_hertz}};
+    {"peers", measure_peers},        {"arena", measure_arena},         {"rings", measure_rings},
+    {"cells", measure_cells},        {"growth", measure_growth},       {"gas", measure_gas},
+    {"floors", measure_floors},      {"models", measure_models},       {"threads", measure_threads},
+    {"bodies", measure_bodies},      {"frequency", measure_frequency}, {"one-hertz", measure_one_hertz},
+    {"compounds", measure_compounds}};
 
 const Part& part(std::string_view name) {
   for (const Part& p : parts) {

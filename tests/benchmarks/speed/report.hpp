@@ -33,6 +33,7 @@ std::vector<Target> measure_cells(const Settings& settings);
 std::vector<Target> measure_growth(const Settings& settings);
 std::vector<Target> measure_gas(const Settings& settings);
 std::vector<Target> measure_floors(const Settings& settings);
+std::vector<Target> measure_compounds(const Settings& settings);
 std::vector<Target> measure_models(const Settings& settings);
 std::vector<Target> measure_threads(const Settings& settings);
 std::vector<Target> measure_bodies(const Settings& settings);

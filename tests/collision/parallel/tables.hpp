@@ -14,6 +14,12 @@
 
 namespace kds::collision::tests {
 
+/// By what else than forces bodies of a TableMaker move.
+struct TableMotions {
+  bool curved = false;         ///< terms of degree 3 and above, where there are any
+  bool moving_ground = false;  ///< the ground has a velocity, and curves if bodies do
+};
+
 /// Makes scenes in which bodies fall on a ground, slide over it, and strike each other.
 template <int Degree>
 class TableMaker {
@@ -21,7 +27,8 @@ class TableMaker {
   using Path = certificates::PointMotion<Degree>;
 
  public:
-  explicit TableMaker(std::uint64_t seed) : random_(seed), seed_(seed) {
+  explicit TableMaker(std::uint64_t seed, const TableMotions& motions = {})
+      : random_(seed), motions_(motions), seed_(seed) {
     coarse_ = random_.one_in(3);
     row_ = 4 + random_.below(7);
     spacing_ = coarse_ ? 2 : random_.between(1.5, 4);
@@ -72,6 +79,15 @@ class TableMaker {
   Manner manner(std::size_t most_domains) { return random_manner(random_, most_domains); }
 
  private:
+  void add_terms(Path& path, double size) {
+    for (int k = 3; k <= Degree && motions_.curved; ++k) {
+      for (int d = 0; d < 3; ++d) {
+        const double term = random_.one_in(3) ? 0 : number(-1, 1) * size / (k * (k - 1));
+        path.coefficients[static_cast<std::size_t>(k)][d] = term;
+      }
+    }
+  }
+
   double number(double low, double high) {
     if (!coarse_) return random_.between(low, high);
     return random_.integer(static_cast<int>(2 * low), static_cast<int>(2 * high)) * 0.5;
@@ -94,6 +110,7 @@ class TableMaker {
     if (sideways_) force.x() = number(-2, 2);
     body.motion = {motion<Degree>(place + Vector(0, 0, size + height), velocity, force)};
     if (body.fixed) body.motion[0] = motion<Degree>(place + Vector(0, 0, size));
+    if (!body.fixed) add_terms(body.motion[0], 3);
     body.restitution = random_.one_in(12) ? 0 : rebound_;
     if (random_.one_in(6)) body.mass = random_.between(0.2, 5);
     return body;
@@ -117,6 +134,11 @@ class TableMaker {
         const double radius = width + side;
         ground = fixed_body<Degree>(Sphere{radius}, motion<Degree>(centre + Vector(0, 0, 1 - radius)));
       }
+      if (motions_.moving_ground) {
+        const double w = number(-0.5, 0.5), v = number(-1, 1), u = number(-1, 1);
+        ground.motion[0].coefficients[1] = Vector(u, v, w);
+        add_terms(ground.motion[0], 1);
+      }
       ground.restitution = random_.one_in(3) ? 1 : 0.5;
       bodies.push_back(ground);
     }
@@ -131,6 +153,7 @@ class TableMaker {
       start += number(0.5, 1);
       const Vector velocity(0, 0, number(-0.5, 0.5)), force(0, 0, random_.one_in(4) ? 0.25 : 0);
       lift.motion.push_back(motion<Degree>(lift.motion.back().position(start), velocity, force, start));
+      if (motions_.moving_ground) add_terms(lift.motion.back(), 1);
     }
     bodies.push_back(lift);
   }
@@ -145,6 +168,7 @@ class TableMaker {
   }
 
   Random random_;
+  TableMotions motions_;
   std::uint64_t seed_;
   bool coarse_ = false, mixed_ = false, sideways_ = false;
   std::size_t row_ = 5;
