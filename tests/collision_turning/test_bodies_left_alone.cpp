@@ -60,6 +60,7 @@ class Scene {
                               : 5),
         heard_(heard) {
     options_.response = Response::elastic;
+    options_.orientation_error = seed % 3 == 0 ? 0.1 : 1e-3;
     options_.broad_phase = broad_phase;
     if (seed % 2 == 0) options_.walls = Walls{Vector3d::Constant(-room_ - 1), Vector3d::Constant(room_ + 1)};
     if (seed % 5 == 0) options_.window = 0.4;
