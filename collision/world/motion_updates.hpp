@@ -45,7 +45,8 @@ class MotionUpdates final : private RestingListener<Motion> {
   // turning/turning_pieces.cpp: bodies that precess
   /// A piece of a body that precesses is over. The next begins where it ends, so nothing has jumped.
   void turn_on() requires(turns<Motion>);
-  /// Bodies that were left alone, and whose pairs are to be tested, get the pieces that they would have otherwise.
+  /// Bodies that were left alone, and of which pairs are to be tested for more than whether their balls meet, get the
+  /// pieces that they would have otherwise.
   void look_at_tested() requires(turns<Motion>);
   /// All of them get these.
   void look_at_all() requires(turns<Motion>);
@@ -54,7 +55,7 @@ class MotionUpdates final : private RestingListener<Motion> {
   /// Changes the motion of a body that takes no part in the event, and reports it.
   void change(BodySlot slot, const Motion& motion);
   void move_attached(BodySlot slot, bool jumped);
-  double left_alone_until(BodySlot slot) const requires(turns<Motion>);
+  double left_alone_until(BodySlot slot) requires(turns<Motion>);
   void look_at(BodySlot slot) requires(turns<Motion>);
   void turn(BodySlot slot, const Motion& motion) requires(turns<Motion>);
 

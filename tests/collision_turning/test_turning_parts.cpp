@@ -54,11 +54,11 @@ struct Spinning {
     return motion;
   }
   /// One that turns about its middle axis, nearly, and so does not do so for long.
-  BodySlot add() {
+  BodySlot add(const Vector3d& moments = {2, 1, 3}) {
     const BodySlot slot = test_turning_parts::add<1>(bodies, {.shape = Box{{1, 2, 3}}, .motion = {motion()}});
     bodies[slot].tumbles = true;
     bodies[slot].entered = false;  // or it would go on with the piece that it has
-    tumbling.add(slot, principal_inertia(Vector3d(2, 1, 3).asDiagonal()));
+    tumbling.add(slot, principal_inertia(moments.asDiagonal()));
     bodies.move(slot, tumbling.take_up(slot, motion(), 0));
     bodies[slot].entered = true;
     return slot;
@@ -211,6 +211,39 @@ TEST_CASE("Tumbling: a body that was left alone has the piece that it would have
   CHECK(part.tumbling.next_time() == watched.tumbling.next_time());
   CHECK(part.counters.rotation_pieces == watched.counters.rotation_pieces);
   part.tumbling.audit(until);
+}
+
+TEST_CASE("Tumbling: points keep within what is told of all pieces to come", "[turning]") {
+  double fullest = 0;
+  for (const Vector3d& moments : {Vector3d(2, 1, 3), Vector3d(1, 1.9, 2.8), Vector3d(1, 1, 2), Vector3d(1, 1, 0.1)}) {
+    for (const double error : {1e-3, 0.1}) {
+      Spinning part{.options = {.orientation_error = error}};
+      const BodySlot slot = part.add(moments);
+      std::vector<LooselyTurning<1>> told;
+      for (int piece = 0; piece < 60; ++piece) {
+        const RigidMotion<1> motion = part.bodies.motion(slot);
+        const double starts = motion.start(), ends = part.tumbling.next_time();
+        for (const LooselyTurning<1>& loose : told) {
+          const double t0 = loose.motion.start();
+          if (starts > t0 + 1 / 3.0) continue;  // a radian
+          for (int i = 0; i <= 4; ++i) {
+            for (int d = 0; d < 3; ++d) {
+              const double t = starts + 0.25 * i * (ends - starts), s = t - t0;
+              const Vector3d x = Vector3d::Unit(d), from = loose.motion.position(x, t0).vector;
+              const Vector3d straight = from + s * loose.motion.velocity(x, t0).vector;
+              const double off = (motion.position(x, t).vector - straight).norm();
+              const double most = loose.off + loose.rate_error * s + loose.bend * s * s / 2;
+              REQUIRE(off <= most);
+              fullest = std::max(fullest, off / most);
+            }
+          }
+        }
+        told.push_back(part.tumbling.loosely_turning(slot, ends));
+        part.turn_on();
+      }
+    }
+  }
+  CHECK(fullest > 0.6);
 }
 
 TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm for eight flights", "[turning]") {

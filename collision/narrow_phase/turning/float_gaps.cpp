@@ -33,8 +33,9 @@ void find_triangle_parts_by_four(const FloatView& view, const TrianglesTogether&
   }
 }
 
-float find_separated_part_by_four(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
-  return PlaneBetween<FourFloats>(view, a, b).part();
+float find_separated_part_by_four(const FloatView& view, const PointsTogether& a, const PointsTogether& b,
+                                  const LooseTurns* loose) {
+  return PlaneBetween<FourFloats>(view, a, b).part(loose);
 }
 
 }  // namespace
@@ -72,8 +73,9 @@ unsigned find_nodes_apart_by(float margin, const FloatView& view, const NodesTog
 void find_triangle_parts(const FloatView& view, const TrianglesTogether& triangles, float* parts) {
   gaps().triangle_parts(view, triangles, parts);
 }
-float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
-  return gaps().separated_part(view, a, b);
+float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b,
+                          const LooseTurns* loose) {
+  return gaps().separated_part(view, a, b, loose);
 }
 
 }  // namespace kds::collision

@@ -23,8 +23,9 @@ void find_triangle_parts_by_eight(const FloatView& view, const TrianglesTogether
   __builtin_memcpy(parts, &found, sizeof found);
 }
 
-float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b) {
-  return PlaneBetween<EightFloats>(view, a, b).part();
+float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b,
+                                   const LooseTurns* loose) {
+  return PlaneBetween<EightFloats>(view, a, b).part(loose);
 }
 
 }  // namespace kds::collision::detail

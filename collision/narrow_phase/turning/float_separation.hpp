@@ -33,9 +33,15 @@ class PlaneBetween {
     find_normal();
   }
 
-  /// For how much of the time ahead it surely lies between them.
-  [[gnu::always_inline]] float part() const {
+  /// For how much of the time ahead it surely lies between them. `loose`: null if they turn as the view tells.
+  [[gnu::always_inline]] float part(const LooseTurns* loose) const {
     if (!(widest_ > 0)) return 0;
+    return loose ? part_of_turns<true>(*loose) : part_of_turns<false>({});
+  }
+
+ private:
+  template <bool Loose>
+  [[gnu::always_inline]] float part_of_turns(const LooseTurns& loose) const {
     const Vector turn_a = all<float>(view_.turn_a), turn_b = all<float>(view_.turn_b);
     // Of n . x for points x that turn: n . (w x x) is (n x w) . x.
     const Vector rate_a = cross(n_, turn_a), rate_b = cross(n_, turn_b);
@@ -47,25 +53,32 @@ class PlaneBetween {
     Floats least = all<Floats>(1);
     float plane[3];
     for (int i = 0; i < 3; ++i) plane[i] = 0.5F * (dot(of_a.along[i], x) + dot(of_b.along[i], y) + way[i]);
+    if (Loose) plane[2] = 0.5F * way[2];
     plane[0] -= 0.5F * view_.round;
-    const Floats third = all<Floats>(view_.third[0]);
+    const Floats third = all<Floats>(Loose ? 0 : view_.third[0]);
     const auto keep = [&](const PointsTogether& points, const Heights& of, float sense, const float(&from)[3])
         __attribute__((always_inline)) {
       const Vectors n[3] = {all<Floats>(&of.along[0].x), all<Floats>(&of.along[1].x), all<Floats>(&of.along[2].x)};
       for (int first = 0; first < points.count; first += lanes_of_floats<Floats>) {
         const Vectors p = some(points, first);
         const Floats f0 = from[0] + sense * dot(n[0], p), f1 = from[1] + sense * dot(n[1], p);
-        least = lesser(least, positive_part(f0, f1, from[2] + sense * dot(n[2], p), third));
+        const Floats f2 = Loose ? all<Floats>(from[2]) : from[2] + sense * dot(n[2], p);
+        least = lesser(least, positive_part(f0, f1, f2, third));
       }
     };
-    keep(a_, of_a, -1, {plane[0] - view_.margin, plane[1], plane[2]});
-    keep(b_, of_b, 1, {way[0] - plane[0] - view_.round - view_.margin, way[1] - plane[1], way[2] - plane[2]});
+    float beyond_a[3] = {plane[0] - view_.margin, plane[1], plane[2]};
+    float beyond_b[3] = {way[0] - plane[0] - view_.round - view_.margin, way[1] - plane[1], way[2] - plane[2]};
+    if (Loose) {
+      beyond_a[0] -= loose.off[0], beyond_a[1] -= loose.rate[0], beyond_a[2] -= loose.bend[0];
+      beyond_b[0] -= loose.off[1], beyond_b[1] -= loose.rate[1], beyond_b[2] -= loose.bend[1];
+    }
+    keep(a_, of_a, -1, beyond_a);
+    keep(b_, of_b, 1, beyond_b);
     float part = least[0];
     for (int i = 1; i < lanes_of_floats<Floats>; ++i) part = least[i] < part ? least[i] : part;
     return part;
   }
 
- private:
   /// What heights of points, their rates and bends are products with.
   struct Heights {
     Vector along[3];

@@ -50,14 +50,23 @@ struct PointsTogether {
   int count;  ///< a multiple of eight
 };
 
+/// Of bodies of which it is not known how exactly they turn: what is charged for that, of a and b, in the units of a
+/// view. Their points are off by no more than the first; their velocities at the time of the view are off by no more
+/// than the second; and as they turn they accelerate by no more than the third.
+struct LooseTurns {
+  float off[2], rate[2], bend[2];
+};
+
 /// Along the line between their centres, or along an axis of one of them that turns with it.
 void find_node_waits(const FloatView& view, const NodesTogether& nodes, NodeWaits& waits);
 /// Whether they are surely farther apart than a margin at the time of the view: bit i of pair i.
 unsigned find_nodes_apart_by(float margin, const FloatView& view, const NodesTogether& nodes);
 /// For how much of the time ahead triangles are surely apart.
 void find_triangle_parts(const FloatView& view, const TrianglesTogether& triangles, float* parts);
-/// For how much of the time ahead a plane is found that separates all of the two bodies.
-float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b);
+/// For how much of the time ahead a plane is found that separates all of the two bodies. `loose`: null if they turn as
+/// the view tells.
+float find_separated_part(const FloatView& view, const PointsTogether& a, const PointsTogether& b,
+                          const LooseTurns* loose = nullptr);
 
 namespace detail {
 
@@ -66,7 +75,7 @@ struct FloatGaps {
   void (*node_waits)(const FloatView&, const NodesTogether&, NodeWaits&);
   unsigned (*nodes_apart_by)(float margin, const FloatView&, const NodesTogether&);
   void (*triangle_parts)(const FloatView&, const TrianglesTogether&, float* parts);
-  float (*separated_part)(const FloatView&, const PointsTogether& a, const PointsTogether& b);
+  float (*separated_part)(const FloatView&, const PointsTogether& a, const PointsTogether& b, const LooseTurns* loose);
 };
 /// In registers of four floats.
 extern const FloatGaps gaps_by_four;
@@ -77,7 +86,8 @@ const FloatGaps* gaps_by_eight();
 void find_node_waits_by_eight(const FloatView& view, const NodesTogether& nodes, NodeWaits& waits);
 unsigned find_nodes_apart_by_eight(float margin, const FloatView& view, const NodesTogether& nodes);
 void find_triangle_parts_by_eight(const FloatView& view, const TrianglesTogether& triangles, float* parts);
-float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b);
+float find_separated_part_by_eight(const FloatView& view, const PointsTogether& a, const PointsTogether& b,
+                                   const LooseTurns* loose);
 
 }  // namespace detail
 }  // namespace kds::collision

@@ -120,13 +120,14 @@ unsigned nodes_apart_by(double margin, const NodesView<Degree>& view, const Node
 
 /// For how much of the time ahead a plane surely separates the two bodies, whose outer points are in their units.
 template <int Degree>
-float separated_part(const NodesView<Degree>& view, const OuterPoints& a, const OuterPoints& b) {
+float separated_part(const NodesView<Degree>& view, const OuterPoints& a, const OuterPoints& b,
+                     const LooseTurns* loose = nullptr) {
   static_assert(OuterPoints::most == most_outer_points);
   if (!view.certain || !(view.ahead > 0)) return 0;
   const auto places = [](const OuterPoints& points) {
     return PointsTogether{points.x(), points.y(), points.z(), static_cast<int>(points.size())};
   };
-  return find_separated_part(view.floats, places(a), places(b));
+  return find_separated_part(view.floats, places(a), places(b), loose);
 }
 
 /// A corner of a triangle in the units of a view, in four floats.

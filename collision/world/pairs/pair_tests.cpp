@@ -7,15 +7,18 @@
 #include "collision/in_parts.hpp"
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
+#include "collision/narrow_phase/turning/loosely_turning.hpp"
 #include "collision/profile.hpp"
 #include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/pairs/pairs.hpp"
+#include "collision/world/turning/tumbling.hpp"
 #include "kds/roots/failure_time.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace kds::collision {
@@ -237,6 +240,11 @@ void Pairs<Motion>::test(std::size_t most) {
 template <class Motion>
 void Pairs<Motion>::test(Slot slot) {
   Pair& pair = pairs_[slot];
+  if constexpr (turns<Motion>) {
+    const double end = horizon(pair);  // before now if one of them is left alone
+    const bool apart = end < clock_.now || apart_in_all_pieces(slot) > end;
+    if (apart && !pair.fresh && !pair.overlapping) return set_contact(slot, never);
+  }
   const auto a = bodies_.moving(pair.a);
   const auto b = bodies_.moving(pair.b);
   FoundTouch found;
@@ -326,19 +334,32 @@ bool Pairs<Motion>::certify() {
   return true;
 }
 
+/// What is known of the present pieces does not count for a body that is left alone.
 template <class Motion>
-double Pairs<Motion>::alone_until(BodySlot id, double larger) const {
+double Pairs<Motion>::alone_until(BodySlot id, double larger,
+                                  const Tumbling<Motion>& tumbling) requires(turns<Motion>) {
+  const double now = clock_.now;
   double until = never;
+  bool estimated = false;
+  std::optional<LooselyTurning<Motion::degree>> own;
   for (const Link& link : links(id)) {
     const Pair& pair = pairs_[link.slot];
-    const detail::Body<Motion>& other = bodies_[link.other];
-    const bool known = !pair.dirty && !pair.overlapping && !contacts_.contains(link.slot);
-    if (!known || unbounded(pair) || (other.shape && bends(other.shape->shape))) return clock_.now;
-    const auto radius = [&](BodySlot slot) { return (1 + larger) * bodies_[slot].bounding_radius; };
-    const certificates::BallSeparation<Motion::degree> apart{bodies_.path(id), bodies_.path(link.other), radius(id),
-                                                             radius(link.other)};
-    until = std::min(until, apart.apart_until(clock_.now));
-    if (!(until > clock_.now)) return clock_.now;
+    const bool in_queue = contacts_.contains(link.slot);
+    if (pair.dirty || pair.overlapping || unbounded(pair) || (in_queue && !pair.estimated)) return now;
+    estimated = estimated || in_queue;
+    double apart = balls_apart_until(link.slot, larger);
+    if (!(apart > now)) apart = apart_in_all_pieces(link.slot);
+    const auto &shape = bodies_[id].shape, &other = bodies_[link.other].shape;
+    if (!(apart > now) && shape && other && !tumbling.is_alone(link.other)) {
+      if (!own) own = tumbling.loosely_turning(id, now);
+      apart = apart_until(*shape, *own, *other, tumbling.loosely_turning(link.other, now));
+      if (apart_.size() <= link.slot) apart_.resize(pairs_.size(), -never);
+      apart_[link.slot] = apart;
+    }
+    until = std::min(until, apart);
+  }
+  if (until > now && estimated) {
+    for (const Link& link : links(id)) set_contact(link.slot, never);
   }
   return until;
 }

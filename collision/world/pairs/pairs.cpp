@@ -1,6 +1,8 @@
 #include "collision/world/pairs/pairs.hpp"
 
+#include "certificates/ball_separation.hpp"
 #include "collision/motions.hpp"
+#include "collision/shapes/bending_mesh.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
 
@@ -179,6 +181,16 @@ void Pairs<Motion>::release(Slot slot) {
   --unlisted_;
   pair.alive = false;
   free_.push_back(slot);
+}
+
+template <class Motion>
+double Pairs<Motion>::balls_apart_until(Slot slot, double larger) const {
+  const Pair& pair = pairs_[slot];
+  const auto bent = [this](BodySlot body) { return bodies_[body].shape && bends(bodies_[body].shape->shape); };
+  if (pair.fresh || pair.overlapping || unbounded(pair) || bent(pair.a) || bent(pair.b)) return clock_.now;
+  using Balls = certificates::BallSeparation<Motion::degree>;
+  const auto radius = [&](BodySlot body) { return (1 + larger) * bodies_[body].bounding_radius; };
+  return Balls{bodies_.path(pair.a), bodies_.path(pair.b), radius(pair.a), radius(pair.b)}.apart_until(clock_.now);
 }
 
 template <class Motion>

@@ -27,6 +27,9 @@
 
 namespace kds::collision {
 
+template <class Motion>
+class Tumbling;
+
 namespace detail {
 
 using PairSlot = std::uint32_t;
@@ -131,20 +134,24 @@ class Pairs final : public PairListener {
   template <class Waits>
   void turned(BodySlot id, const Waits& waits) {
     for (const Link& link : links(id)) {
-      if (!waits(link.other)) mark_dirty(link.slot);
+      if (!waits(link.other)) mark_turned(link.slot);
     }
   }
-  /// Calls visit(a, b) for each pair that is to be tested, and for those that become so meanwhile.
+  /// Calls visit(a, b, slot) for each pair that is to be tested, and for those that become so meanwhile.
   template <class Visit>
   void every_untested(const Visit& visit) const {
     for (std::size_t i = 0; i < dirty_.size(); ++i) {
       const auto [a, b] = std::pair(pairs_[dirty_[i]].a, pairs_[dirty_[i]].b);
-      if (pairs_[dirty_[i]].alive) visit(a, b);
+      if (pairs_[dirty_[i]].alive) visit(a, b, dirty_[i]);
     }
   }
-  /// A time up to which the ball around the body meets none around others, whatever the orientations; now, or earlier,
-  /// where that is not known. The balls are larger than they need be by this part of their radii.
-  double alone_until(BodySlot id, double larger) const;
+  /// A time until which the balls around the two bodies of a pair are apart; now, or earlier, where that does not tell
+  /// of contacts, as of those that may overlap. They are larger than they need be by this part of their radii.
+  double balls_apart_until(Slot slot, double larger) const;
+  /// A time up to which the body surely meets no other, whatever pieces the motions of bodies that precess are made of;
+  /// now, or earlier, where that is not known. The balls around bodies are larger than they need be by this part of
+  /// their radii. After that either the body is left alone, or has turned().
+  double alone_until(BodySlot id, double larger, const Tumbling<Motion>& tumbling) requires(turns<Motion>);
   /// A body has another box, and its motion is unchanged.
   void box_changed(BodySlot id);
   /// The next contact of the two has to be found anew.
@@ -250,6 +257,8 @@ class Pairs final : public PairListener {
   void end(Slot slot);
   void release(Slot slot);
   void mark_dirty(Slot slot);
+  void mark_turned(Slot slot);
+  double apart_in_all_pieces(Slot slot) const { return slot < apart_.size() ? apart_[slot] : -never; }
   void report_boxes(bool meet, BodySlot a, BodySlot b) {
     reports_.add_volumes(meet, bodies_.id_of(a), bodies_.id_of(b), clock_.now);
   }
@@ -280,8 +289,11 @@ class Pairs final : public PairListener {
   ListArena<Link> links_;
   LargeVector<typename ListArena<Link>::List> of_;  ///< the pairs of each body, up to the last that has had one
   std::vector<Slot> dirty_;
-  LargeVector<double> estimates_;             ///< by place in dirty_: see estimate_balls()
-  LargeVector<FoundTouch> found_;             ///< by pair, if known; not valid once a motion has changed
+  LargeVector<double> estimates_;  ///< by place in dirty_: see estimate_balls()
+  LargeVector<FoundTouch> found_;  ///< by pair, if known; not valid once a motion has changed
+  /// By pair, up to the last of which that has been found: a time until which the two are apart, whatever pieces of
+  /// bodies that precess begin. It saves tests; all events are the same without it.
+  std::vector<double> apart_;
   CalendarQueue<detail::PairRank> contacts_;  ///< slots are pairs
   BoxTimes<detail::PairRank> boxes_;          ///< slots are pairs; used where follows_boxes_
   std::size_t unlisted_ = 0;                  ///< pairs that the broad phase does not list
@@ -296,6 +308,15 @@ class Pairs final : public PairListener {
 
 template <class Motion>
 inline void Pairs<Motion>::mark_dirty(Slot slot) {
+  if constexpr (turns<Motion>) {
+    if (slot < apart_.size()) apart_[slot] = -never;
+  }
+  mark_turned(slot);
+}
+
+/// A pair is to be tested, and what is known of it for all pieces still holds.
+template <class Motion>
+inline void Pairs<Motion>::mark_turned(Slot slot) {
   if (pairs_[slot].dirty) return;
   pairs_[slot].dirty = true;
   dirty_.push_back(slot);

@@ -26,7 +26,7 @@ typename Pairs<Motion>::Image Pairs<Motion>::image() const {
 
 template <class Motion>
 void Pairs<Motion>::become(const Image& image) {
-  pairs_.clear(), free_.clear(), dirty_.clear(), found_.clear(), links_.clear();
+  pairs_.clear(), free_.clear(), dirty_.clear(), found_.clear(), apart_.clear(), links_.clear();
   of_.assign(bodies_.slots(), {});
   unlisted_ = 0;
   begin_ = Begin::moving;
@@ -51,7 +51,7 @@ void Pairs<Motion>::clear() {
   become({});
   of_.clear(), estimates_.clear(), links_ = {};
   pairs_.shrink_to_fit(), found_.shrink_to_fit(), dirty_.shrink_to_fit(), free_.shrink_to_fit();
-  of_.shrink_to_fit(), estimates_.shrink_to_fit();
+  of_.shrink_to_fit(), estimates_.shrink_to_fit(), apart_.shrink_to_fit();
 }
 
 template <class Motion>

@@ -106,10 +106,54 @@ bool Tumbling<Motion>::can_leave_alone(BodySlot slot, double t) const {
   return 0x1p-48 * farthest <= path_rounding * bodies_[slot].bounding_radius;
 }
 
+/// The motion is off the free rotation by up to twice the option, now and then: G is that free rotation, turned by a
+/// small rotation D so that it begins where the motion is. For D the angular momentum is off, and so the angular
+/// velocity that is calculated from it. The greatest magnitude of the latter follows from the energy, but is constant
+/// for symmetric tops. Euler's equations in principal axes, w_i' = (I_j - I_k) / I_i w_j w_k, have |w'| <= K |w|^2 /
+/// sqrt(3), where K is the greatest of these factors.
+template <class Motion>
+LooselyTurning<Motion::degree> Tumbling<Motion>::loosely_turning(BodySlot slot, double t) const {
+  const Motion& moves = bodies_.motion(slot);
+  LooselyTurning<Motion::degree> loose{moves.restarted(t), moves.path};
+  Vector3d& rate = loose.motion.angular_velocity;
+  if (!has(slot) || of_[slot]->ends == never) {
+    loose.off = 0x1p-40;  // for roundings of the restart
+    loose.bend = dot(rate, rate) * (1 + 0x1p-40);
+    return loose;
+  }
+  constexpr double farthest = 2.0 + 0x1p-9;  // of the option, and some for the sum of small rotations
+  const Body& body = *of_[slot];
+  const Vector3d& moments = body.inertia.moments;
+  const double least = moments.minCoeff(), momentum = norm(body.state.momentum), off = farthest * error_ + 0x1p-40;
+  loose.path = body.path;
+  loose.off = 2 * off;
+  loose.rate_error = off * momentum / least;
+  rate = collision::angular_velocity(body.inertia,
+                                     {body.state.momentum, of_axes(body.inertia, unit(loose.motion.orientation)), t});
+  double most = norm(rate) + loose.rate_error;
+  if (body.inertia.symmetry < 0) {
+    const double root_of_energy = std::sqrt(std::max(0.0, dot(body.state.momentum, rate)));
+    most = (root_of_energy + off * momentum / std::sqrt(least)) / std::sqrt(least);
+  }
+  double factor = 0;
+  for (int i = 0; i < 3; ++i) {
+    factor = std::max(factor, std::abs(moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i]);
+  }
+  loose.bend = most * most * (1 + 0.578 * factor) * (1 + 0x1p-20);
+  return loose;
+}
+
 template <class Motion>
 void Tumbling<Motion>::leave_alone(BodySlot slot, double t) {
   ++alone_;
   ends_.set(slot, t);
+}
+
+template <class Motion>
+bool Tumbling<Motion>::goes_on_alone(BodySlot slot, double t) {
+  if (!(t > of_[slot]->ends)) return false;
+  if (t < ends_.time(slot)) ends_.set(slot, t);
+  return true;
 }
 
 template <class Motion>

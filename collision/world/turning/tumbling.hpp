@@ -3,6 +3,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/free_turning.hpp"
+#include "collision/narrow_phase/turning/loosely_turning.hpp"
 #include "collision/response/free_rotation.hpp"
 #include "collision/response/rotation_piece.hpp"
 #include "collision/world/bodies.hpp"
@@ -122,8 +123,13 @@ class Tumbling {
   /// Leaves it alone: next_time() is then, and it keeps the motion that it has. Precondition: nothing needs its motion
   /// until then, except after catch_up().
   void leave_alone(BodySlot slot, double t);
+  /// Whether one that is alone stays so at least until its piece would be over, if it is looked at at t; then it is, or
+  /// earlier.
+  bool goes_on_alone(BodySlot slot, double t);
   bool is_alone(BodySlot slot) const { return alone_ > 0 && has(slot) && of_[slot]->ends != ends_.time(slot); }
   bool any_alone() const { return alone_ > 0; }
+  /// What is known of how a body turns from t on, whatever its pieces. Precondition: it is not alone.
+  LooselyTurning<Motion::degree> loosely_turning(BodySlot slot, double t) const;
   /// It is alone no longer: the piece that it has just before t.
   Motion catch_up(BodySlot slot, double t);
 

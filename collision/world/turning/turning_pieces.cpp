@@ -5,28 +5,30 @@
 #include "collision/world/turning/turning_extents.hpp"
 
 #include <algorithm>
+#include <cstdint>
 
 namespace kds::collision {
 
 template <class Motion>
 void MotionUpdates<Motion>::turn_on() requires(turns<Motion>) {
   const BodySlot slot = tumbling_.next_body();
+  // What is alone no longer may be left alone again, but not for less than its present piece lasts.
+  if (tumbling_.is_alone(slot)) bodies_.move(slot, tumbling_.catch_up(slot, clock_.now));
   const double until = left_alone_until(slot);
-  if (until > clock_.now) return tumbling_.leave_alone(slot, until);
-  const auto piece = tumbling_.take_next();
-  turn(piece.slot, piece.motion);
+  if (until > std::max(clock_.now, bodies_[slot].turns_until)) return tumbling_.leave_alone(slot, until);
+  turn(slot, bodies_[slot].turns_until > clock_.now ? bodies_.motion(slot) : tumbling_.take_next().motion);
   reports_.add(Reports::Kind::moved, bodies_.id_of(slot), bodies_.id_of(slot), {.time = clock_.now});
 }
 
 /// A time up to which nothing needs to know how the body is turned; now if there is none. What it may meet until then
 /// are bodies whose paths change, or that come near: their pairs are tested, and before that it is looked at.
 template <class Motion>
-double MotionUpdates<Motion>::left_alone_until(BodySlot slot) const requires(turns<Motion>) {
+double MotionUpdates<Motion>::left_alone_until(BodySlot slot) requires(turns<Motion>) {
   const double now = clock_.now;
   const bool seen = !(tumbling_.unheard_until() > now) || options_.report_pairs || volumes_.any_from_callers() ||
                     !bodies_.attachments().empty() || !resting_.empty();
   if (seen || tumbling_.is_alone(slot) || !bodies_[slot].entered) return now;
-  double until = std::min(tumbling_.unheard_until(), pairs_.alone_until(slot, path_rounding));
+  double until = std::min(tumbling_.unheard_until(), pairs_.alone_until(slot, path_rounding, tumbling_));
   if (options_.walls && until > now) {
     const double radius = (1 + path_rounding) * bodies_[slot].bounding_radius;
     until = std::min(until, earliest_wall_time_of_all(bodies_.path(slot), radius, *options_.walls, now));
@@ -43,9 +45,12 @@ void MotionUpdates<Motion>::look_at(BodySlot slot) requires(turns<Motion>) {
 template <class Motion>
 void MotionUpdates<Motion>::look_at_tested() requires(turns<Motion>) {
   if (!tumbling_.any_alone()) return;
-  pairs_.every_untested([&](BodySlot a, BodySlot b) {
+  pairs_.every_untested([&](BodySlot a, BodySlot b, std::uint32_t pair) {
+    if (!tumbling_.is_alone(a) && !tumbling_.is_alone(b)) return;
+    const double apart = pairs_.balls_apart_until(pair, path_rounding);
     for (const BodySlot slot : {a, b}) {
-      if (tumbling_.is_alone(slot)) look_at(slot);
+      if (!tumbling_.is_alone(slot)) continue;
+      if (!(apart > clock_.now) || !tumbling_.goes_on_alone(slot, apart)) look_at(slot);
     }
   });
 }
