@@ -13,8 +13,8 @@ namespace kds::io {
 /// Whether files have events of this kind.
 bool is_in_files(const kds::collision::DomainEvent& event);
 
-/// As a domain records it, of a kind that files have, and no mark. Its bodies must be those of the scene: nothing was added or
-/// removed since.
+/// As a domain records it, of a kind that files have, and no mark. Its bodies must be those of the scene: nothing was
+/// added or removed since.
 Event to_event(const kds::collision::DomainEvent& event);
 
 /// An event of the log of a domain, or of a scene that is run as one world, which has no other owner. `cause`: of those

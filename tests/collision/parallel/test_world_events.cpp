@@ -158,8 +158,7 @@ TEST_CASE("What one domain records of an island comes after what another one tel
              following(Kind::wakes, 1, DomainEvent::nobody, struck),
              following(Kind::mark, 1, 1, later)};
   logs[1] = {following(Kind::mark, 1, 0, struck), following(Kind::wakes, 5, DomainEvent::nobody, struck),
-             following(Kind::mark, 1, 0, later), following(Kind::rests, 5, DomainEvent::nobody, later),
-             event(1, 0, 6)};
+             following(Kind::mark, 1, 0, later), following(Kind::rests, 5, DomainEvent::nobody, later), event(1, 0, 6)};
   EventMerge merge(std::move(logs));
   const std::vector<std::pair<Kind, BodyId>> right{{Kind::contact, 7}, {Kind::contact, 2}, {Kind::contact, 1},
                                                    {Kind::wakes, 1},   {Kind::wakes, 5},   {Kind::rests, 5},
