@@ -16,6 +16,9 @@ namespace kds::collision {
 template <class Motion>
 bool RestingContacts<Motion>::divisible() const {
   if (!solved()) return false;
+  for (BodySlot id = 0; Motion::degree >= 3 && id < of_.size(); ++id) {
+    if (leans(id)) return false;
+  }
   const auto has_span = [this](BodySlot id) { return id < spans_.slots() && spans_.contains(id); };
   std::vector<char> seen(of_.size());
   for (BodySlot id = 0; id < of_.size(); ++id) {

@@ -74,7 +74,7 @@ Seen run_in_all_manners(const Staging<certificates::PointMotion<2>>& scene, doub
 TEMPLATE_TEST_CASE_SIG("Domains: bodies that lean on each other have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_piles<Degree>(1, 16, 6, seen);
+  compare_piles<Degree>(15, 32, 6, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 5);
