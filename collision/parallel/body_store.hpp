@@ -55,7 +55,7 @@ class BodyStore {
   /// The slot of a body; `no_body` if it is not stored here.
   BodySlot find(BodySlot number) const { return part_ ? part_->slots.find(number) : number; }
 
-  /// Calls take(number) for what each body rests on, unless these are walls.
+  /// Calls take(number) for what each body rests or leans on, unless these are walls.
   template <class Take>
   void each_carrier(const Take& take) const {
     if constexpr (!turns<Motion>) {

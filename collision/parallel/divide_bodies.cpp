@@ -109,34 +109,95 @@ template <class Motion>
 void Domains<Motion>::begin(Division division, std::span<const BodySlot> answered, std::vector<Overlap> overlaps,
                             bool logs, double now) {
   drop();
+  islands_are_known_ = true;
   const bool whole = !store_.is_part();
   division_ = std::make_unique<Division>(std::move(division));
   logs_ = logs;
   changed_.clear();
   if (team_.count() == 1) {
     const Engine<Motion>& engine = store_.engine();
+    find_islands(engine, now);
     std::vector<DomainIndex> knowers;
     for (const BodySlot slot : answered) {
-      const DomainIndex owner = assign_body(*division_, engine.bodies(), engine.parts().scripts, slot, now, knowers);
+      const DomainIndex owner = assign(engine, slot, now, knowers);
       division_->note(slot, owner, knowers);
     }
     overlaps_ = std::move(overlaps);
+    know_islands_.clear();
     return;
   }
   if (whole) meshes_ = store_.bodies().meshes();
   const auto before = store_.begin_part(now);
   Engine<Motion>& from = before ? before->engine() : store_.whole();
   division_->slots = store_.slots();
+  know_islands_.clear();
+  if (whole) find_islands(from, now);
   send_bodies(from, answered, now);
   send_overlaps(from, answered, std::move(overlaps), now);
+  know_islands_.clear();
   if (whole) store_.whole().transfer().lend();
+}
+
+/// Bodies that lean on each other are known to the same domains: to all that are to know one of them. Precondition:
+/// slots are numbers.
+template <class Motion>
+void Domains<Motion>::find_islands(const Engine<Motion>& from, double now) {
+  know_islands_.clear();
+  if constexpr (!turns<Motion>) {
+    const auto& bodies = from.bodies();
+    std::vector<char> seen(bodies.slots());
+    std::vector<DomainIndex> all;
+    std::vector<Eigen::Vector3d> places;
+    for (BodySlot first = 0; first < bodies.slots(); ++first) {
+      if (!bodies.alive(first) || bodies.fixed(first) || std::exchange(seen[first], 1)) continue;
+      std::vector<BodySlot> island{first};
+      for (std::size_t i = 0; i < island.size(); ++i) {
+        const auto resting = from.transfer().kept_resting(island[i]);
+        if (!resting.state()) continue;
+        for (const auto& contact : resting.state()->contacts) {
+          const BodySlot other = contact.a == island[i] ? contact.b : contact.a;
+          if (other != no_body && !bodies.fixed(other) && !std::exchange(seen[other], 1)) island.push_back(other);
+        }
+      }
+      if (island.size() == 1) continue;
+      places.clear();
+      for (const BodySlot slot : island) places.push_back(place_at(bodies.path(slot), now));
+      islands_are_known_ = division_->find_knowers(places, all) && islands_are_known_;
+      for (const BodySlot slot : island) {
+        know_islands_[slot] = all;
+        for (const BodySlot sensor : bodies.attachments().sensors(slot)) know_islands_[sensor] = all;
+      }
+    }
+  }
+}
+
+/// As assign_body(), but that a domain knows islands as a whole.
+template <class Motion>
+DomainIndex Domains<Motion>::assign(const Engine<Motion>& from, BodySlot slot, double now,
+                                    std::vector<DomainIndex>& knowers) const {
+  const DomainIndex owner = assign_body(*division_, from.bodies(), from.parts().scripts, slot, now, knowers);
+  const auto found = know_islands_.find(slot);
+  if (found != know_islands_.end()) knowers = found->second;
+  return owner;
+}
+
+template <class Motion>
+bool Domains<Motion>::any_islands() const {
+  bool any = false;
+  store_.each_carrier([&](BodySlot number) {
+    const BodySlot slot = store_.find(number);
+    any = any || slot == no_body || !store_.bodies().fixed(slot);
+  });
+  return any;
 }
 
 template <class Motion>
 bool Domains<Motion>::carriers_are_known() const {
-  bool known = true;
+  bool known = islands_are_known_;
   store_.each_carrier([&](BodySlot number) {
-    known = known && store_.find(number) != no_body && division_->owner_of(number) == Division::nobody;
+    const BodySlot slot = store_.find(number);
+    known =
+        known && slot != no_body && (!store_.bodies().fixed(slot) || division_->owner_of(number) == Division::nobody);
   });
   return known;
 }
@@ -151,7 +212,7 @@ void Domains<Motion>::send_bodies(Engine<Motion>& from, std::span<const BodySlot
     const auto sent = answered.first(std::min(answered.size(), bodies_at_once));
     answered = answered.subspan(sent.size());
     for (const BodySlot slot : sent) {
-      const DomainIndex owner = assign_body(*division_, from.bodies(), from.parts().scripts, slot, now, knowers);
+      const DomainIndex owner = assign(from, slot, now, knowers);
       const auto add = [&](std::size_t process) {
         slots[process].push_back(slot);
         news[process].moves.add(from.bodies().number(slot), owner, knowers);
@@ -196,7 +257,7 @@ void Domains<Motion>::send_overlaps(Engine<Motion>& from, std::span<const BodySl
       }
       continue;
     }
-    assign_body(*division_, from.bodies(), from.parts().scripts, slot, now, knowers);
+    assign(from, slot, now, knowers);
     each_process(knowers, [&](std::size_t process) { news[process].overlaps.push_back(overlap); });
   }
   overlaps_ = std::move(overlaps);

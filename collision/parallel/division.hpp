@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 #include <span>
 #include <utility>
@@ -91,11 +92,34 @@ struct Division {
     partition.each_within(place, halo + radius,
                           [&](std::size_t cell) { found.push_back(static_cast<DomainIndex>(cell)); });
   }
+  /// Finds the domains that know an island whose bodies have their centres there: those that are to know one of them,
+  /// but for those for which another is farther outside than standing bodies are known, twice the halo. False if one of
+  /// these is to own a body of it.
+  bool find_knowers(std::span<const Eigen::Vector3d> places, std::vector<DomainIndex>& found) const {
+    std::vector<DomainIndex> of_one, both;
+    found.clear();
+    for (const Eigen::Vector3d& place : places) {
+      find_knowers(place, 0, of_one);
+      both.clear();
+      std::ranges::set_union(found, of_one, std::back_inserter(both));
+      found.swap(both);
+    }
+    std::erase_if(found, [&](DomainIndex domain) {
+      return std::ranges::any_of(
+          places, [&](const Eigen::Vector3d& place) { return !(outside(place, partition.cell(domain)) <= 2 * halo); });
+    });
+    return std::ranges::all_of(places, [&](const Eigen::Vector3d& place) {
+      return std::ranges::binary_search(found, static_cast<DomainIndex>(partition.cell_of(place)));
+    });
+  }
 
   /// Rounding of places, and what else is far below a halo.
   double margin() const { return 0x1p-20 * halo; }
+  /// How far apart the centres of two bodies are at most that touch, or rest on each other: in clusters with a gap of
+  /// up to 2^-7 of the smaller one's size.
+  double touching() const { return (2 + 0x1p-7) * greatest_radius; }
   /// What of the halo windows can use.
-  double room() const { return halo - 2 * greatest_radius; }
+  double room() const { return halo - touching(); }
 };
 
 /// Where the centre of a body is at a time; for a body that has not entered, where it will enter.
@@ -208,8 +232,8 @@ DomainIndex assign_body(const Division& division, const Bodies<Motion>& bodies, 
   const bool guided = moved == detail::MovedBy::itself;
   const bool owned = moved == detail::MovedBy::others || (guided && radius <= division.largest_guided);
   // A body without an owner stays known to the same domains, so its radius counts; and who knows a body that rests on
-  // it has to know it too.
-  const double reach = radius + 2 * division.greatest_radius;
+  // it has to know it too, also one in an island that reaches out of the halo.
+  const double reach = radius + 2 * division.greatest_radius + division.halo;
   division.find_knowers(place, owned ? 0 : guided ? never : reach, knowers);
   return owned ? static_cast<DomainIndex>(division.partition.cell_of(place)) : Division::nobody;
 }

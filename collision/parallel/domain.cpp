@@ -31,6 +31,11 @@ Domain<Motion>::Domain(const WorldOptions& options, const Division& division, st
       by_law_(options.law != nullptr),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)) {
+  if constexpr (!turns<Motion>) {
+    engine_.transfer().islands().set_owned([this](BodySlot slot) {
+      return slot < known_.size() && (known_[slot].role == Role::deep || known_[slot].role == Role::followed);
+    });
+  }
   // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away.
   const Partition& partition = division.partition;
   partition.each_within(partition.cell(index), 2 * division.halo, [&](std::size_t other) {
@@ -85,6 +90,7 @@ void Domain<Motion>::begin_window() {
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
   bulge_ = 0;
+  add_neighbours();
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
@@ -104,7 +110,9 @@ void Domain<Motion>::begin_window() {
     ++report_.owned;
     const auto& path = bodies.path(slot);
     const double bulge = bulge_of(path, now, division_.window_end);
-    const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot) && bulge <= division_.halo / 4;
+    // What others know though it is deep, since it leans on others, may soon be known to this domain alone.
+    const bool steady = !detail::has_script(bodies, engine_.parts().scripts, slot) && bulge <= division_.halo / 4 &&
+                        division_.is_known_to_one(number(slot));
     if (steady && inside(path.position(now), cell) - bulge > 2 * division_.halo) {
       known.role = Role::deep;
       bulge_ = std::max(bulge_, bulge);
@@ -113,6 +121,7 @@ void Domain<Motion>::begin_window() {
     }
   }
   std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
+  if constexpr (!turns<Motion>) begin_islands();
 }
 
 template <class Motion>
@@ -142,6 +151,7 @@ void Domain<Motion>::run(double until) {
   changed_.clear(), events_.clear(), fresh_.clear();
   report_.told = {};
   report_.computed = 0;
+  if (!report_.divisible) return;
   const double since = world_.now();
   try {
     world_.advance_to(until);
@@ -156,11 +166,13 @@ void Domain<Motion>::run(double until) {
   if (!report_.divisible) return;
   for (const BodySlot slot : engine_.transfer().take_solved()) mark_changed(slot);
   for (Followed& body : followed_) follow(body, until);
+  for (const auto& [slot, copy] : shared_copies_) follow_outside(copy, until);
   const auto& bodies = engine_.bodies();
   for (BodySlot slot = 0; slot < known_.size() && report_.stayed; ++slot) {
     if (known_[slot].role == Role::deep) report_.stayed = stays_deep(bodies.path(slot).position(until));
   }
   if constexpr (turns<Motion>) note_pieces(since);
+  if constexpr (!turns<Motion>) find_islands(until);
   sort_by_number(fresh_);
   changes_.append(fresh_);
 }
@@ -183,6 +195,13 @@ void Domain<Motion>::follow(Followed& body, double until) {
     NeighbourDomain& other = neighbours_[place];
     other.nearest = std::min(other.nearest, outside(swept, other.cell));
   }
+}
+
+/// A copy whose fate is that of an owned body, since one leans on the other.
+template <class Motion>
+void Domain<Motion>::follow_outside(const Followed& body, double until) {
+  const StaticBox swept = swept_place(path_of(body.motion), body.since, until);
+  report_.overshoot = std::max(report_.overshoot, farthest_outside(swept, division_.partition.cell(index_)));
 }
 
 template <class Motion>
@@ -226,7 +245,8 @@ void Domain<Motion>::compare(std::span<const std::span<const Change>> all) {
 }
 
 template <class Motion>
-void Domain<Motion>::commit(BodyStore<Motion>& store) const {
+void Domain<Motion>::commit(BodyStore<Motion>& store) {
+  islands_ = std::move(next_islands_);
   for (const BodySlot slot : changed_) {
     store.engine().transfer().go_on_from(store.find(number(slot)), engine_.transfer().progress(slot));
   }
@@ -263,6 +283,7 @@ void Domain<Motion>::find_moves(const BodyStore<Motion>& store, double t) {
   moves_.clear();
   std::vector<DomainIndex> knowers;
   for (const Followed& body : followed_) {
+    if (islands_.of.contains(body.slot)) continue;
     const BodySlot moved = number(body.slot);
     const Eigen::Vector3d place = place_at(store.bodies().path(store.find(moved)), t);
     // Mostly it is deeper in the cell than any other's halo, as it was.
@@ -270,6 +291,12 @@ void Domain<Motion>::find_moves(const BodyStore<Motion>& store, double t) {
     const auto owner = static_cast<DomainIndex>(division_.partition.cell_of(place));
     division_.find_knowers(place, 0, knowers);
     if (owner != index_ || !std::ranges::equal(knowers, division_.knowers(moved))) moves_.add(moved, owner, knowers);
+  }
+  for (const auto& [slot, place] : islands_.of) {
+    const BodySlot moved = number(slot);
+    const std::vector<DomainIndex>& to_know = islands_.knowers[place.island];
+    if (place.owner != index_ || !std::ranges::equal(to_know, division_.knowers(moved)))
+      moves_.add(moved, place.owner, to_know);
   }
 }
 
@@ -309,6 +336,10 @@ void Domain<Motion>::note_change(BodySlot slot, double t) {
     body.since = t, body.motion = motion;
     if (division_.is_known_to_one(number(slot))) return;
   }
+  if (const auto copy = shared_copies_.find(slot); copy != shared_copies_.end()) {
+    follow_outside(copy->second, t);
+    copy->second.since = t, copy->second.motion = motion;
+  }
   fresh_.push_back(
       {number(slot), motion, t, engine_.transfer().progress(slot).turning, engine_.transfer().resting(slot)});
 }
@@ -322,6 +353,7 @@ DomainIndex Domain<Motion>::owner_of(BodySlot slot) const {
 
 template <class Motion>
 void Domain<Motion>::piece(World&, BodyId id) {
+  note_islands();
   const BodySlot slot = body_slot(id);
   const double t = world_.now();
   const Known& known = known_[slot];

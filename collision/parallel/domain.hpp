@@ -14,6 +14,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -25,13 +26,16 @@ namespace kds::collision {
 
 /// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
-  /// False if something has happened that domains cannot compute: bodies have come to lean on each other, a pair is let
+  /// False if something has happened that domains cannot compute: bodies that turn have come to rest, a body rests on a
+  /// fixed one that has an owner, an island has bodies of three domains or reaches through the halo, a pair is let
   /// pass, or a script takes a body far away at one instant.
   bool divisible = true;
   /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;
-  /// How far owned bodies have left the cell.
+  /// How far owned bodies have left the cell, and bodies of their islands; and how far these were outside when the
+  /// window began.
   double overshoot = 0;
+  double begun_outside = 0;
   /// How near to this cell wrong copies have come, or their originals, from when they went wrong.
   double nearest_wrong = never;
   std::uint64_t wrong = 0;  ///< copies that have gone wrong
@@ -100,7 +104,7 @@ class Domain final : private BasicWorldListener<Motion> {
 
   /// Tells `store` of the bodies of this domain that have changed. Domains may do the first at once, the second one by
   /// one.
-  void commit(BodyStore<Motion>& store) const;
+  void commit(BodyStore<Motion>& store);
   void commit_resting(BodyStore<Motion>& store) const;
   /// Numbers of owned bodies that the last step has changed.
   void append_changed(std::vector<BodySlot>& numbers) const;
@@ -110,6 +114,8 @@ class Domain final : private BasicWorldListener<Motion> {
   /// they are at t.
   void find_moves(const BodyStore<Motion>& store, double t);
   const BodyMoves& moves() const { return moves_; }
+  /// Bodies that are known here, and those that lean on them or are attached to these; by numbers, ascending.
+  std::vector<BodySlot> with_islands(std::span<const BodySlot> numbers) const;
 
  private:
   enum class Role : std::uint8_t { unowned, deep, followed, copy };
@@ -130,6 +136,15 @@ class Domain final : private BasicWorldListener<Motion> {
     Role role = Role::unowned;
     bool changed = false;     ///< in this step, and this domain tells the store
     std::uint32_t place = 0;  ///< of followed bodies: in followed_; of copies: of the owner in neighbours_
+  };
+  /// Who is to own and to know the owned bodies that lean on others, and what is attached to them.
+  struct Islands {
+    struct Place {
+      DomainIndex owner;
+      std::size_t island;
+    };
+    std::map<BodySlot, Place> of{};                   ///< by slot
+    std::vector<std::vector<DomainIndex>> knowers{};  ///< of islands
   };
   void contact(World&, const PairEvent& event) override;
   void separation(World&, const PairEvent& event) override;
@@ -156,6 +171,12 @@ class Domain final : private BasicWorldListener<Motion> {
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);
   void begin_to_follow(BodySlot slot, double t);
+  void add_neighbours();
+  void begin_islands();
+  void note_islands();
+  void mark(std::span<const BodySlot> island, const DomainEvent::Cause& cause, double t);
+  void find_islands(double t);
+  bool leans(BodySlot slot) const;
   BodySlot slot_of(BodySlot number) const { return slots_[place_of(number)]; }
   DomainIndex owner_of(BodySlot slot) const;
   bool is_first_to_know(BodySlot a, BodySlot b) const;
@@ -171,6 +192,7 @@ class Domain final : private BasicWorldListener<Motion> {
   void note_change(BodySlot slot, double t);
   void note_pieces(double since);
   void follow(Followed& body, double until);
+  void follow_outside(const Followed& body, double until);
   bool stays_deep(const Eigen::Vector3d& place) const {
     return inside(place, division_.partition.cell(index_)) - bulge_ >= division_.halo;
   }
@@ -186,14 +208,17 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<BodySlot> slots_;  ///< of the bodies that are known, ascending by their numbers
   std::vector<Known> known_;     ///< by slot
   std::vector<Followed> followed_;
-  std::vector<Copy> copies_;       ///< by number
-  std::vector<BodySlot> changed_;  ///< slots of the bodies of which this step tells the store
-  std::vector<Change> fresh_;      ///< as changes_, of this step; sorted by number when it is over
-  MotionChanges<Motion> changes_;  ///< of this window, of bodies that others know or own
+  std::map<BodySlot, Followed> shared_copies_;  ///< copies in islands of owned bodies, by slot
+  Islands islands_, next_islands_;              ///< those near borders, when a step was last committed, and of the last
+  std::vector<Copy> copies_;                    ///< by number
+  std::vector<BodySlot> changed_;               ///< slots of the bodies of which this step tells the store
+  std::vector<Change> fresh_;                   ///< as changes_, of this step; sorted by number when it is over
+  MotionChanges<Motion> changes_;               ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
-  DomainEvent::Cause cause_;     ///< the last event from which others may follow
-  double caused_at_ = -never;    ///< s
-  std::uint64_t ends_seen_ = 0;  ///< RestingEvent::count, then
+  DomainEvent::Cause cause_;        ///< the last event from which others may follow
+  double caused_at_ = -never;       ///< s
+  std::uint64_t ends_seen_ = 0;     ///< RestingEvent::count, then
+  std::vector<DomainEvent> marks_;  ///< of what follows from cause_
   std::vector<BodySlot> wrong_;
   BodyMoves moves_;
   std::vector<NeighbourDomain> neighbours_;

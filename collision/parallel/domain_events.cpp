@@ -66,6 +66,7 @@ void Domain<Motion>::begin_cause(DomainEvent::Cause::Phase phase, BodyId a, Body
   cause_ = {phase, a, b};
   caused_at_ = t;
   ends_seen_ = engine_.parts().resting.last_event().count;
+  marks_.clear();
 }
 
 /// From what the event that is told now, at t, follows. What this world was not told of are the ends of contacts and
@@ -81,12 +82,18 @@ DomainEvent::Cause Domain<Motion>::cause_at(double t) {
   return cause_;
 }
 
-/// Something about the resting contact of a fixed body and one that is not. All domains that know this one know what
-/// carries it, unless that has an owner.
+/// Something about a resting contact. All domains that know a body know the fixed ones that carry it, unless these have
+/// owners.
 template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
+  note_islands();
   const auto& bodies = engine_.bodies();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
+  if (!turns<Motion> && !bodies.fixed(a) && !bodies.fixed(b)) {
+    record(kind, event);
+    if (kind != Kind::rebound_suppressed) changed(a, event.contact.time), changed(b, event.contact.time);
+    return;
+  }
   const BodySlot carried = bodies.fixed(a) ? b : a, carrier = bodies.fixed(a) ? a : b;
   if (turns<Motion> || bodies.fixed(carried) || !bodies.fixed(carrier) || known_[carrier].role != Role::unowned) {
     report_.divisible = false;
@@ -102,6 +109,7 @@ void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
 
 template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const WallEvent& event) {
+  note_islands();
   if (turns<Motion>) {
     report_.divisible = false;
     return;
@@ -125,6 +133,7 @@ template <class Motion>
 void Domain<Motion>::contact(World&, const PairEvent& event) {
   record(DomainEvent::Kind::contact, event);
   begin_cause(DomainEvent::Cause::Phase::contacts, key(event.a), key(event.b), event.contact.time);
+  note_islands();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
   if (!resolves_ || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
   changed(a, event.contact.time);
@@ -152,6 +161,7 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
          event.user_data});
   }
   begin_cause(DomainEvent::Cause::Phase::walls, key(event.body), static_cast<BodyId>(event.wall), event.contact.time);
+  note_islands();
   changed(slot, event.contact.time);
 }
 
@@ -169,6 +179,7 @@ void Domain<Motion>::passes(World&, const PairEvent& event) {
 /// What a body rests on has given it another motion. (Pieces of bodies that precess are no changes: note_pieces().)
 template <class Motion>
 void Domain<Motion>::moved(World&, BodyId id) {
+  note_islands();
   if constexpr (!turns<Motion>) changed(body_slot(id), world_.now());
 }
 

@@ -132,9 +132,9 @@ std::span<const MotionChange<Motion>> Domains<Motion>::changes_of(DomainIndex do
 template <class Motion>
 double Domains<Motion>::halo_used(const Domain<Motion>& domain, double nearest_stranger) const {
   const double nearest = std::min(domain.report().nearest_wrong, nearest_stranger);
-  const double needed = domain.report().overshoot + 2 * division_->greatest_radius + division_->margin();
+  const double needed = domain.report().overshoot + division_->touching() + division_->margin();
   if (!(needed <= division_->halo && nearest > needed)) return 2;
-  return std::max(0.0, 1 - (nearest - needed) / division_->room());
+  return std::max(0.0, 1 - (nearest - needed) / (division_->room() - domain.report().begun_outside));
 }
 
 template <class Motion>
@@ -337,10 +337,11 @@ void Domains<Motion>::exchange() {
   in_each([&](Domain<Motion>& domain) {
     const std::size_t i = domain.index() - first_;
     std::sort(go_[i].begin(), go_[i].end());
-    // Copies that are wrong go and come again, unless they go anyway.
+    // Copies that are wrong go and come again, unless they go anyway; and so does what leans on those that go.
     std::vector<BodySlot> go;
-    std::ranges::set_difference(domain.wrong(), go_[i], std::back_inserter(come_[i]));
     std::ranges::set_union(domain.wrong(), go_[i], std::back_inserter(go));
+    go = domain.with_islands(go);
+    std::ranges::set_difference(go, go_[i], std::back_inserter(come_[i]));
     std::sort(come_[i].begin(), come_[i].end());
     domain.exchange(go, come_[i], store_, overlaps[i]);
     domain.begin_window();

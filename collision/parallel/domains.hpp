@@ -60,8 +60,11 @@ class Domains {
              double now);
   /// The pairs that overlap of which this process knows.
   std::vector<Overlap> take_overlaps() { return std::move(overlaps_); }
-  /// Whether each body that rests on others rests on such as have no owner: so each domain that knows it knows these.
+  /// Whether each domain that owns a body knows all that it leans on and rests on, and no fixed one of these has an
+  /// owner.
   bool carriers_are_known() const;
+  /// Whether of the bodies that this process stores some lean on each other.
+  bool any_islands() const;
   /// Ends the domains, and gives the world of each process all bodies. Returns the pairs that overlap.
   std::vector<Overlap> end();
   /// Ends the domains without bringing their bodies together. The caller then puts other bodies into the stores.
@@ -147,6 +150,8 @@ class Domains {
   void share_meshes();
   bool answers_for(BodySlot number) const;
   std::uint64_t rounds_of(std::size_t bodies, std::size_t at_once);
+  void find_islands(const Engine<Motion>& from, double now);
+  DomainIndex assign(const Engine<Motion>& from, BodySlot slot, double now, std::vector<DomainIndex>& knowers) const;
   void send_bodies(Engine<Motion>& from, std::span<const BodySlot> answered, double now);
   void send_overlaps(Engine<Motion>& from, std::span<const BodySlot> answered, std::vector<Overlap> overlaps,
                      double now);
@@ -178,7 +183,10 @@ class Domains {
   std::uint64_t copies_made_ = 0;                    ///< of bodies owned here, since the last step that held
   /// Pairs that overlap, by numbers: where a window begins all of which a domain of this process knows both bodies.
   std::vector<Overlap> overlaps_;
-  WorldCounters work_;  ///< of domains that there were
+  /// While the scene is divided, by slots: who is to know the bodies that lean on others, and what is attached to them.
+  std::map<BodySlot, std::vector<DomainIndex>> know_islands_;
+  bool islands_are_known_ = true;  ///< to those that are to own bodies of them
+  WorldCounters work_;             ///< of domains that there were
 };
 
 #define KDS_DECLARE(motion) extern template class Domains<motion>;

@@ -203,6 +203,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
       stretch_ = 0;
       return false;
     }
+    // Who is to know bodies that lean on each other is found where all of them are known.
+    if (apart() && !team_.all(!domains_.any_islands())) gather(now_);
     if (!unstarted_ && !apart()) {  // What callers have changed at this time has its consequences first.
       const kds::detail::RaisedFlag telling(telling_);
       world_.advance_to(now_);
@@ -345,6 +347,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   }
 
   void divide_anew() {
+    if (team_.count() > 1 && !team_.all(!domains_.any_islands())) return gather(now_);
     const std::vector<BodySlot> answered = domains_.answered();
     auto division = find_division(answered);
     if (!division) return gather(now_);

@@ -41,10 +41,10 @@ class ParallelListener {
 /// The events are those of a World with the same bodies, in the same order, the same bits, whatever the number of
 /// threads and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
 ///
-/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; some lean on each other (what
-/// lies on fixed bodies or leans on walls is divided, docs/parallel.md), or bodies that turn come to rest; meshes that
-/// may meet themselves; box functions; response `callback` without WorldOptions::law; reports of pairs or of pieces.
-/// What this costs is in docs/parallel.md.
+/// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; bodies that turn come to
+/// rest; others lean on each other in an island that reaches far out of a cell; meshes that may meet themselves; box
+/// functions; response `callback` without WorldOptions::law; reports of pairs or of pieces. What this costs is in
+/// docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own

@@ -41,6 +41,8 @@ inline void relay(const DomainEvent& event, ParallelListener& listener) {
       return listener.rests_at_wall(wall);
     case Kind::passes:
       return listener.passes(pair);
+    case Kind::mark:
+      return;
   }
 }
 

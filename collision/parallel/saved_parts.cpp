@@ -128,7 +128,7 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
     if (failure) std::rethrow_exception(failure);
     throw std::runtime_error(!loaded             ? "snapshot: another process has not loaded its part"
                              : found != expected ? "snapshot: the parts have not the bodies of the scene"
-                                                 : "snapshot: a body rests on one that is not there, or is not fixed");
+                                                 : "snapshot: a body rests on one that is not there");
   }
   leave();
   meshes_ = rest.bodies.meshes;
@@ -139,7 +139,7 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
   overlaps_ = std::move(overlaps);
 }
 
-/// Whether what bodies of any process rest on is stored in one of them, and is fixed.
+/// Whether what bodies of any process rest on is stored in one of them.
 template <class Motion>
 bool Domains<Motion>::carriers_are_there() {
   std::vector<BodySlot> wanted;
@@ -150,7 +150,7 @@ bool Domains<Motion>::carriers_are_there() {
   const auto look = [&](const std::vector<BodySlot>& numbers) {
     for (const BodySlot number : numbers) {
       const BodySlot slot = store_.find(number);
-      if (slot != no_body && store_.bodies().entered(slot) && store_.bodies().fixed(slot)) ++counts[1];
+      if (slot != no_body && store_.bodies().entered(slot)) ++counts[1];
     }
   };
   look(wanted);

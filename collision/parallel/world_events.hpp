@@ -31,7 +31,10 @@ struct DomainEvent {
     wakes_at_wall,
     rests,
     rests_at_wall,
-    passes
+    passes,
+    /// Nothing that is told: something has happened to an island with bodies of two domains. What each of them records
+    /// of it comes after what this follows from.
+    mark
   } kind;
   static constexpr DomainIndex nobody = no_domain;
   DomainIndex other_owner = nobody;  ///< a domain that has to have this event too; `nobody` if there is none
@@ -82,7 +85,7 @@ struct DomainEvent {
     friend auto operator<=>(const Order&, const Order&) = default;
   };
   Order order() const {
-    constexpr std::array<int, 11> places{5, 0, 0, 0, 1, 1, 2, 2, 4, 4, 3};  // by kind
+    constexpr std::array<int, 12> places{6, 0, 0, 0, 2, 2, 3, 3, 5, 5, 4, 1};  // by kind
     const bool at_wall = is_at_wall();
     return {contact.time,
             origin(),
@@ -116,6 +119,7 @@ class BasicEventMerge {
       // An event of two domains is found by the later of them.
       if (event->other_owner == DomainEvent::nobody || event->other_owner < domain) add_if_possible(domain);
     }
+    pass_marks();
   }
 
   bool empty() const { return left_ == 0; }
@@ -127,6 +131,23 @@ class BasicEventMerge {
   }
   /// The same, and leaves it behind.
   DomainEvent take_next() {
+    const DomainEvent event = take();
+    pass_marks();
+    return event;
+  }
+
+ private:
+  struct Possible {
+    DomainEvent::Order order;
+    std::size_t domain;
+    bool operator<(const Possible& other) const {
+      return other.order < order || (other.order == order && other.domain < domain);
+    }
+  };
+
+  using Queue = std::priority_queue<Possible>;  ///< each event once, the first on top
+
+  DomainEvent take() {
     const DomainEvent event = next();
     const std::size_t domain = next_queue().top().domain;
     next_queue().pop();
@@ -144,17 +165,9 @@ class BasicEventMerge {
     if (other != DomainEvent::nobody && !is_shared_by(domain, other)) add_if_possible(other);
     return event;
   }
-
- private:
-  struct Possible {
-    DomainEvent::Order order;
-    std::size_t domain;
-    bool operator<(const Possible& other) const {
-      return other.order < order || (other.order == order && other.domain < domain);
-    }
-  };
-
-  using Queue = std::priority_queue<Possible>;  ///< each event once, the first on top
+  void pass_marks() {
+    while (!next_queue().empty() && next().kind == DomainEvent::Kind::mark) take();
+  }
 
   Queue& next_queue() { return following_.empty() ? possible_ : following_; }
   const Queue& next_queue() const { return following_.empty() ? possible_ : following_; }

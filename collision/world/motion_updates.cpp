@@ -180,6 +180,11 @@ void MotionUpdates<Motion>::tell_passes(const detail::RestingContact& resting) {
 }
 
 template <class Motion>
+void MotionUpdates<Motion>::tell_touched(BodySlot slot) {
+  reports_.add_once(Reports::Kind::moved, bodies_.id_of(slot), bodies_.id_of(slot), {.time = clock_.now});
+}
+
+template <class Motion>
 Contact MotionUpdates<Motion>::contact_of(const detail::RestingContact& resting) const {
   Contact contact{.time = clock_.now, .point = bodies_.path(resting.a).position(clock_.now) + resting.point};
   contact.normal = resting.normal;

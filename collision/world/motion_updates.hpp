@@ -66,6 +66,7 @@ class MotionUpdates final : private RestingListener<Motion> {
   void tell_rebound_suppressed(BodySlot a, BodySlot b) override;
   void tell_resting(bool begins, const detail::RestingContact& contact) override;
   void tell_passes(const detail::RestingContact& contact) override;
+  void tell_touched(BodySlot slot) override;
   Contact contact_of(const detail::RestingContact& contact) const;
 
   const WorldOptions& options_;

@@ -51,6 +51,10 @@ class Reports {
   void add(Kind kind, BodyId a, BodyId b, const Contact& contact, int wall = -1) {
     reports_.insert({kind, a, b, contact, wall, 0, 0});
   }
+  /// The same, unless there is such a report already.
+  void add_once(Kind kind, BodyId a, BodyId b, const Contact& contact) {
+    if (!reports_.contains({kind, a, b, contact, -1, 0, 0})) add(kind, a, b, contact);
+  }
 
   /// Bounding volumes meet, or part. If they meet and part at one instant, or part and meet (bodies that are moved in
   /// turn, lists of ends that are brought into order one after the other), neither is reported.

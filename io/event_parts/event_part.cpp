@@ -97,6 +97,7 @@ void EventPart::on_step(const kds::collision::StepEvents& events) {
     const std::size_t before = step_.size();
     append_bytes(step_, std::uint64_t{0});
     for (const auto& event : log) {
+      if (event.kind == kds::collision::DomainEvent::Kind::mark) append_mark(step_, event);
       if (!is_in_files(event)) continue;
       append_record(step_, to_event(event), event.other_owner, event.follows() ? &event.cause : nullptr);
     }

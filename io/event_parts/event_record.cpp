@@ -17,6 +17,7 @@ using kds::collision::Feature;
 
 // The first byte: the kind of the event, and what follows.
 constexpr std::uint8_t kinds = 0x0f;
+constexpr std::uint8_t kind_of_marks = 0x0f;  // of domains, which are no events of files
 constexpr std::uint8_t has_features = 0x10;
 constexpr std::uint8_t has_other_owner = 0x20;
 constexpr std::uint8_t has_cause = 0x40;
@@ -59,7 +60,8 @@ DomainKind to_domain_kind(EventKind kind) {
 }  // namespace
 
 bool is_in_files(const DomainEvent& event) {
-  return event.kind != DomainKind::rebound_suppressed && event.kind != DomainKind::rebound_suppressed_at_wall;
+  return event.kind != DomainKind::rebound_suppressed && event.kind != DomainKind::rebound_suppressed_at_wall &&
+         event.kind != DomainKind::mark;
 }
 
 Event to_event(const DomainEvent& event) {
@@ -73,6 +75,13 @@ Event to_event(const DomainEvent& event) {
           c.normal,
           c.feature_a,
           c.feature_b};
+}
+
+void append_mark(std::string& bytes, const DomainEvent& mark) {
+  put(bytes, static_cast<std::uint8_t>(kind_of_marks | has_other_owner | has_cause));
+  put(bytes, static_cast<std::uint32_t>(mark.other_owner));
+  put(bytes, static_cast<std::uint8_t>(mark.cause.phase)), put(bytes, mark.cause.a), put(bytes, mark.cause.b);
+  put(bytes, mark.contact.time), put(bytes, mark.a);
 }
 
 void append_record(std::string& bytes, const Event& event, std::size_t other_owner, const DomainEvent::Cause* cause) {
@@ -110,6 +119,15 @@ Records Records::part(std::size_t length) {
   return first;
 }
 
+DomainEvent::Cause Records::cause() {
+  const auto phase = take<std::uint8_t>();
+  require(phase <= static_cast<std::uint8_t>(DomainEvent::Cause::Phase::contacts));
+  DomainEvent::Cause cause{.phase = static_cast<DomainEvent::Cause::Phase>(phase)};
+  cause.a = take<kds::collision::BodyId>();
+  cause.b = take<kds::collision::BodyId>();
+  return cause;
+}
+
 Records::Record Records::record() {
   const auto first = take<std::uint8_t>();
   require((first & kinds) < event_kind_names.size() &&
@@ -118,13 +136,7 @@ Records::Record Records::record() {
   Event& event = record.event;
   event.kind = static_cast<EventKind>(first & kinds);
   if ((first & has_other_owner) != 0) record.other_owner = take<std::uint32_t>();
-  if ((first & has_cause) != 0) {
-    const auto phase = take<std::uint8_t>();
-    require(phase <= static_cast<std::uint8_t>(DomainEvent::Cause::Phase::contacts));
-    record.cause.phase = static_cast<DomainEvent::Cause::Phase>(phase);
-    record.cause.a = take<kds::collision::BodyId>();
-    record.cause.b = take<kds::collision::BodyId>();
-  }
+  if ((first & has_cause) != 0) record.cause = cause();
   event.time = take<double>();
   event.a = take<std::uint32_t>();
   event.b = take<std::uint32_t>();
@@ -145,9 +157,28 @@ Records::Record Records::record() {
 
 Event Records::event() { return record().event; }
 
+DomainEvent Records::mark() {
+  DomainEvent mark{};
+  mark.kind = DomainKind::mark;
+  require(take<std::uint8_t>() == (kind_of_marks | has_other_owner | has_cause));
+  const auto other_owner = take<std::uint32_t>();
+  require(other_owner < DomainEvent::nobody);
+  mark.other_owner = static_cast<decltype(DomainEvent::other_owner)>(other_owner);
+  mark.cause = cause();
+  mark.contact.time = take<double>();
+  mark.a = mark.b = take<kds::collision::BodyId>();
+  return mark;
+}
+
 DomainEvent Records::event_of(std::size_t domain, std::size_t domains) {
+  const auto of_two = [&](std::size_t other) { return other < domains && other != domain; };
+  if (!rest_.empty() && (static_cast<std::uint8_t>(rest_.front()) & kinds) == kind_of_marks) {
+    const DomainEvent found = mark();
+    require(of_two(found.other_owner));
+    return found;
+  }
   const auto [event, other_owner, cause] = record();
-  require(other_owner == DomainEvent::nobody || (other_owner < domains && other_owner != domain));
+  require(other_owner == DomainEvent::nobody || of_two(other_owner));
   return {to_domain_kind(event.kind),
           static_cast<decltype(DomainEvent::other_owner)>(other_owner),
           event.a,

@@ -13,14 +13,17 @@ namespace kds::io {
 /// Whether files have events of this kind.
 bool is_in_files(const kds::collision::DomainEvent& event);
 
-/// As a domain records it, of a kind that files have. Its bodies must be those of the scene: nothing was added or
-/// removed since.
+/// As a domain records it, of a kind that files have, and no mark. Its bodies must be those of the scene: nothing was
+/// added or removed since.
 Event to_event(const kds::collision::DomainEvent& event);
 
 /// An event of the log of a domain, or of a scene that is run as one world, which has no other owner. `cause`: of those
 /// that follow from another, in the log of a domain; else null.
 void append_record(std::string& bytes, const Event& event, std::size_t other_owner,
                    const kds::collision::DomainEvent::Cause* cause = nullptr);
+
+/// A mark (DomainEvent::Kind) in the log of a domain.
+void append_mark(std::string& bytes, const kds::collision::DomainEvent& mark);
 
 /// Reads records, one after another, and checks that they are of a scene of so many bodies.
 class Records {
@@ -42,6 +45,8 @@ class Records {
     kds::collision::DomainEvent::Cause cause;
   };
   Record record();
+  kds::collision::DomainEvent::Cause cause();
+  kds::collision::DomainEvent mark();
   template <class T>
   T take();
 

@@ -97,6 +97,7 @@ struct Lying final : RestingListener<RigidMotion<2>> {
     told.emplace_back(begins, contact.a, contact.b);
   }
   void tell_passes(const detail::RestingContact&) override {}
+  void tell_touched(BodySlot) override {}
 
   static Motion at(const Vector3d& position, double pull, double start = 0) {
     return {{{position, Vector3d::Zero(), Vector3d(0, 0, -pull / 2)}, start}};

@@ -384,10 +384,16 @@ TEST_CASE("event parts: events that cannot be, or on which parts do not agree, a
   for (auto* one : {&passes, &told_by_other})
     one->kind = DomainEvent::Kind::passes, one->cause = {rests.cause.phase, 2, 3};
   CHECK(merged({{event(1, 1, 2, 3), passes}, {event(1, 0, 2, 3), told_by_other}}).empty());
+  auto mark = event(1, 1, 2, 2), other_mark = event(1, 0, 2, 2);
+  for (auto* one : {&mark, &other_mark}) one->kind = DomainEvent::Kind::mark, one->cause = rests.cause;
+  CHECK(merged({{event(1, DomainEvent::nobody, 1, 2), mark}, {other_mark, rests}}).empty());
   const std::string first = part_path(file, 0) + ": part of events: ",
                     cannot_be = "has an event that cannot be one of ";
   const std::string disagree = first + "does not agree with the others about what has happened";
   CHECK(merged({{event(1, 1, 2, 3)}, {}}) == disagree);
+  CHECK(merged({{mark}, {}}) == disagree);
+  mark.other_owner = 0;
+  CHECK(merged({{mark}, {}}) == first + cannot_be + "this scene");
   CHECK(merged({{event(1, 1, 2, 3)}, {event(2, 0, 2, 3)}}) == disagree);
   CHECK(merged({{event(1, 1, 2, 3)}, {event(1, DomainEvent::nobody, 2, 3)}}) == disagree);
   CHECK(merged({{event(1, 0, 2, 3)}, {}}) == first + cannot_be + "this scene");

@@ -289,6 +289,7 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::add_to_cluster(c
 template <class Motion>
 void RestingContacts<Motion>::impact(const Contact& contact, double restitution) {
   const double now = clock_.now;
+  if (bodies_.numbered()) note_struck(contact);
   double bounce = never;  // s; shorter flights are left out
   double weight = 0;
   for (const BodySlot id : {contact.a, contact.b}) {
@@ -321,6 +322,7 @@ void RestingContacts<Motion>::impact(const Contact& contact, double restitution)
   for (std::size_t i = 1; i < near.bodies.size(); ++i) {
     const BodySlot id = near.bodies[i];
     if (bodies_.fixed(id)) continue;
+    if (bodies_.numbered()) listener_->tell_touched(id);
     const Motion before = bodies_.motion(id).restarted(now);
     Motion motion = before;
     motion.coefficients[1] = near.velocities[i];

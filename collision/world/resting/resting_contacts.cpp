@@ -92,8 +92,9 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const 
 
 template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
-  const bool leans = contact.b != no_body && !(bodies_.fixed(contact.a) || bodies_.fixed(contact.b));
-  if (bodies_.numbered() && leans) throw RestsInPart();
+  // Of paths of degree 3 and above islands are not divided either.
+  const bool leans = contact.b != no_body && !bodies_.fixed(contact.a) && !bodies_.fixed(contact.b);
+  if (Motion::degree >= 3 && bodies_.numbered() && leans) throw RestsInPart();
   member(contact.a);
   for (const Slot slot : fewer(contact.a, contact.b)) {
     Contact& other = contacts_[slot];
@@ -104,6 +105,8 @@ void RestingContacts<Motion>::add(const Contact& contact) {
     return;
   }
   const Slot slot = give_slot(contact);
+  for (const BodySlot id : {contact.a, contact.b}) list(slot, id);
+  note_shared(contact.a, contact.b);
   contacts_[slot].alive = true;
   contacts_[slot].fresh = true;
   contacts_[slot].began = clock_.now;
@@ -128,7 +131,7 @@ std::vector<detail::RestingSlot> RestingContacts<Motion>::in_order(BodySlot id) 
   return slots;
 }
 
-/// A slot with the contact, which its bodies list.
+/// A slot with the contact, which its bodies are to list.
 template <class Motion>
 typename RestingContacts<Motion>::Slot RestingContacts<Motion>::give_slot(const Contact& contact) {
   Slot slot;
@@ -141,13 +144,15 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::give_slot(const 
     free_.pop_back();
   }
   contacts_[slot] = contact;
-  for (const BodySlot id : {contact.a, contact.b}) {
-    if (id == no_body) continue;
-    auto& list = member(id).contacts;
-    if (bodies_.fixed(id)) contacts_[slot].listed = static_cast<std::uint32_t>(list.size());
-    list.push_back(slot);
-  }
   return slot;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::list(Slot slot, BodySlot id) {
+  if (id == no_body) return;
+  auto& contacts = member(id).contacts;
+  if (bodies_.fixed(id)) contacts_[slot].listed = static_cast<std::uint32_t>(contacts.size());
+  contacts.push_back(slot);
 }
 
 /// Takes a contact off the lists of its bodies.

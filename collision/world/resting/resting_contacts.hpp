@@ -65,15 +65,17 @@ class RestingListener {
   /// A contact begins or ceases to last.
   virtual void tell_resting(bool begins, const detail::RestingContact& contact) = 0;
   virtual void tell_passes(const detail::RestingContact& contact) = 0;
+  /// In a world whose bodies belong to another one: what rests of a body may have changed, though it moves as before.
+  virtual void tell_touched(BodySlot id) = 0;
 
  protected:
   ~RestingListener() = default;
 };
 
-/// Thrown where bodies that are not fixed would come to rest on each other, or of bodies that turn any, in a world
-/// whose bodies belong to another one (transfer.cpp): such bodies are not divided among worlds.
+/// Thrown where bodies that turn would come to rest, in a world whose bodies belong to another one (transfer.cpp): such
+/// bodies are not divided among worlds.
 struct RestsInPart : std::exception {
-  const char* what() const noexcept override { return "World: a part of a world, in which bodies lean on each other"; }
+  const char* what() const noexcept override { return "World: a part of a world, in which bodies come to rest"; }
 };
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
@@ -192,14 +194,17 @@ class RestingContacts {
 
   // resting_transfer.cpp: bodies that several worlds have, each a part of them (transfer.cpp).
   using Progress = RestingProgress;
-  /// Whether each body leans on walls and fixed bodies alone: then the progress of each is all there is.
+  /// Whether the progress of each body is all there is: nothing is still to be solved, and each cluster has a span.
   bool divisible() const;
-  /// Of a body, if it leans on no others but fixed ones; of a fixed one, what rests of it at walls.
+  /// Of a body; of a fixed one, what rests of it at walls.
   Progress progress(BodySlot id) const;
   /// A body without contacts goes on from there. `slot_of`: gives the slot of a body by its number, `no_body` if it is
-  /// not here: then std::runtime_error is thrown.
+  /// not here: then std::runtime_error is thrown. What leans on each other goes on together; require_listed() follows.
   void go_on_from(BodySlot id, const Progress& progress, const std::function<BodySlot(BodySlot)>& slot_of);
-  /// A body is removed with which another world goes on: nothing is told, and what it leaned on goes on as it was.
+  /// Throws std::runtime_error if a body that has gone on leans on one that does not lean on it.
+  void require_listed();
+  /// A body is removed with which another world goes on, and all that leans on it with it: nothing is told, and what is
+  /// fixed goes on as it was.
   void let_go(BodySlot id);
   /// Other worlds run the bodies from now on: this one only keeps the progress of each, until go_on().
   void set_aside();
@@ -211,6 +216,20 @@ class RestingContacts {
   /// been solved for since this was called last, some of them several times.
   const detail::RestingEvent& last_event() const { return last_event_; }
   std::vector<BodySlot> take_solved() { return std::exchange(solved_, {}); }
+
+  /// Whether it leans on a body that is not fixed.
+  bool leans(BodySlot id) const;
+  /// Its island: the bodies that lean on each other, directly or not, and are not fixed; in their order.
+  std::vector<BodySlot> island(BodySlot id) const;
+  /// A world whose bodies belong to another one, and which may have some of them as copies: which are its own.
+  void set_owned(std::function<bool(BodySlot)> owned) { owned_ = std::move(owned); }
+  /// Of islands that have own bodies and copies, all bodies are *shared*, from now on or when they become one, until
+  /// this is called again.
+  void begin_shared();
+  /// The copies that have come to be shared since this was called last.
+  std::vector<BodySlot> take_shared() { return std::exchange(newly_shared_, {}); }
+  /// The islands of shared bodies that something has happened to since this was called last, some several times.
+  std::vector<std::vector<BodySlot>> take_concerned() { return std::exchange(concerned_, {}); }
 
   /// Checks all contacts, once the bodies have the motions that these allow; throws AuditFailure.
   void audit(double t) const;
@@ -263,6 +282,7 @@ class RestingContacts {
   Slot find_among(BodySlot a, BodySlot b, int wall) const;
   Slot find_like(const Contact& contact) const;
   Slot give_slot(const Contact& contact);
+  void list(Slot slot, BodySlot id);
   void unlist(Slot slot);
   std::vector<Slot> in_order(BodySlot id) const;
   Slot first_release() const;
@@ -307,6 +327,14 @@ class RestingContacts {
   double comes_to_rest(const Island& island, const std::vector<Eigen::Vector3d>& velocities);
   void watch(const Island& island, std::vector<Motion>& motions);
 
+  // resting_transfer.cpp
+  Slot listed_by_other(const Contact& contact, BodySlot id) const;
+  bool is_shared(BodySlot id) const { return id < shared_.size() && shared_[id]; }
+  void share(BodySlot id);
+  void note_shared(BodySlot a, BodySlot b);
+  void note_struck(const Contact& contact);
+  void note_concerned(const Island& island);
+
   // cluster_impacts.cpp
   class Neighbourhood;
   friend Neighbourhood;
@@ -326,7 +354,12 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
   detail::RestingEvent last_event_;
   std::vector<BodySlot> solved_;
-  std::vector<Progress> kept_;  ///< by body, up to the last of which there is any
+  std::vector<Progress> kept_;                    ///< by body, up to the last of which there is any
+  std::size_t half_listed_ = 0;                   ///< contacts that only one of two bodies that are not fixed lists
+  std::function<bool(BodySlot)> owned_;           ///< null: all are
+  std::vector<char> shared_;                      ///< by body
+  std::vector<BodySlot> newly_shared_;            ///< take_shared()
+  std::vector<std::vector<BodySlot>> concerned_;  ///< take_concerned()
 };
 
 /// The part of a world that knows what rests in it: contacts that last, or, where bodies turn, groups that lie still.

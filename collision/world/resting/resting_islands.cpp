@@ -166,6 +166,7 @@ typename RestingContacts<Motion>::Island RestingContacts<Motion>::find_island(Bo
     const auto place_b = at_wall ? static_cast<std::uint32_t>(island.bodies.size()) : of_[contact.b].place;
     island.touches.push_back({of_[contact.a].place, place_b, contact.normal, a, b});
   }
+  if (bodies_.numbered()) note_concerned(island);
   return island;
 }
 

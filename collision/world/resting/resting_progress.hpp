@@ -11,9 +11,9 @@
 
 namespace kds::collision {
 
-/// The resting contacts of a body with walls and fixed bodies, and what else decides how they go on: another world that
-/// has the same bodies can go on from it. It is complete if the body leans on no other that is not fixed, since an
-/// island is solved for by itself (resting_islands.cpp).
+/// The resting contacts of a body, and what else decides how they go on: another world that has the same bodies can go
+/// on from it. That of all bodies that lean on each other is complete, since an island is solved for by itself
+/// (resting_islands.cpp). A contact of two bodies that are not fixed is in the progress of both.
 class RestingProgress {
  public:
   struct State {                                     ///< of a body of which something rests

@@ -1,4 +1,4 @@
-// What rests of single bodies: how other worlds go on from it.
+// What rests of bodies: how other worlds go on from it.
 #include "collision/motions.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 
@@ -6,22 +6,27 @@
 #include <cstddef>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 namespace kds::collision {
 
+/// What is left of a cluster when its contacts have ended has spans of its own.
 template <class Motion>
 bool RestingContacts<Motion>::divisible() const {
   if (!solved()) return false;
-  const auto leans = [this](const Contact& contact) {
-    return contact.alive && contact.b != no_body && !bodies_.fixed(contact.a) && !bodies_.fixed(contact.b);
-  };
-  if (std::any_of(contacts_.begin(), contacts_.end(), leans)) return false;
+  for (BodySlot id = 0; Motion::degree >= 3 && id < of_.size(); ++id) {
+    if (leans(id)) return false;
+  }
+  const auto has_span = [this](BodySlot id) { return id < spans_.slots() && spans_.contains(id); };
+  std::vector<char> seen(of_.size());
   for (BodySlot id = 0; id < of_.size(); ++id) {
-    // A cluster of several bodies has one span; what is left of it when their contacts have ended has spans of its own.
     const double ends = of_[id].span_ends;
-    const bool waits_for_others = ends != -never && ends != never && !(id < spans_.slots() && spans_.contains(id));
-    if (waits_for_others) return false;
+    if (ends == -never || ends == never || seen[id] || has_span(id)) continue;
+    const std::vector<BodySlot> bodies = island(id);
+    for (const BodySlot each : bodies) seen[each] = 1;
+    if (std::none_of(bodies.begin(), bodies.end(), has_span)) return false;
   }
   return true;
 }
@@ -60,19 +65,49 @@ void RestingContacts<Motion>::go_on_from(BodySlot id, const Progress& progress,
     for (BodySlot* const body : {&contact.a, &contact.b}) {
       if (*body == no_body) continue;
       const BodySlot slot = *body == bodies_.number(id) ? id : slot_of(*body);
-      if (slot == no_body || (slot != id && !bodies_.fixed(slot))) {
+      if (slot == no_body) {
         throw std::runtime_error("World: body " + std::to_string(bodies_.number(id)) +
-                                 " rests on one that is not there, or is not fixed");
+                                 " rests on one that is not there");
       }
       *body = slot;
     }
+    const BodySlot other = contact.a == id ? contact.b : contact.a;
+    const bool leans = other != no_body && !bodies_.fixed(other);
+    if (const Slot slot = leans ? listed_by_other(contact, id) : none; slot != none) {
+      list(slot, id);
+      --half_listed_;
+      continue;
+    }
     const Slot slot = give_slot(contact);
+    list(slot, id);
+    leans ? void(++half_listed_) : list(slot, other);
     if (state.releases[i] < never) {
       releases_.set(slot, state.releases[i]);
     } else {
       schedule_release(slot);  // as at a new horizon
     }
   }
+}
+
+/// A contact of a body and one that is not fixed, which has listed it while the body has not; `none` if there is none.
+template <class Motion>
+typename RestingContacts<Motion>::Slot RestingContacts<Motion>::listed_by_other(const Contact& contact,
+                                                                                BodySlot id) const {
+  const BodySlot other = contact.a == id ? contact.b : contact.a;
+  if (!rests(other)) return none;
+  const auto& mine = of_[id].contacts;
+  for (const Slot slot : of_[other].contacts) {
+    const Contact& listed = contacts_[slot];
+    if (listed.a != contact.a || listed.b != contact.b || listed.normal != contact.normal) continue;
+    if (std::find(mine.begin(), mine.end(), slot) == mine.end()) return slot;
+  }
+  return none;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::require_listed() {
+  if (std::exchange(half_listed_, 0) != 0)
+    throw std::runtime_error("World: a body rests on one that does not rest on it");
 }
 
 template <class Motion>
@@ -86,6 +121,74 @@ void RestingContacts<Motion>::let_go(BodySlot id) {
   }
   if (id < spans_.slots()) spans_.clear(id);
   of_[id] = {};
+}
+
+template <class Motion>
+bool RestingContacts<Motion>::leans(BodySlot id) const {
+  if (!rests(id) || bodies_.fixed(id)) return false;
+  return std::any_of(of_[id].contacts.begin(), of_[id].contacts.end(), [this](Slot slot) {
+    const Contact& contact = contacts_[slot];
+    return contact.b != no_body && !bodies_.fixed(contact.a) && !bodies_.fixed(contact.b);
+  });
+}
+
+template <class Motion>
+std::vector<BodySlot> RestingContacts<Motion>::island(BodySlot id) const {
+  std::vector<BodySlot> bodies{id};
+  std::unordered_set<BodySlot> found{id};
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const BodySlot at = bodies[i];
+    if (!rests(at) || bodies_.fixed(at)) continue;
+    for (const Slot slot : of_[at].contacts) {
+      const Contact& contact = contacts_[slot];
+      const BodySlot other = contact.a == at ? contact.b : contact.a;
+      if (other != no_body && !bodies_.fixed(other) && found.insert(other).second) bodies.push_back(other);
+    }
+  }
+  std::sort(bodies.begin(), bodies.end(), [this](BodySlot x, BodySlot y) { return bodies_.before(x, y); });
+  return bodies;
+}
+
+template <class Motion>
+void RestingContacts<Motion>::begin_shared() {
+  shared_.clear(), newly_shared_.clear(), concerned_.clear();
+  for (const Contact& contact : contacts_) {
+    if (contact.alive) note_shared(contact.a, contact.b);
+  }
+}
+
+/// Two bodies lean on each other, or one strikes what the other leans on: that is one island, or might have been.
+/// Either all bodies of an island are shared, or all are own ones, or all are copies.
+template <class Motion>
+void RestingContacts<Motion>::note_shared(BodySlot a, BodySlot b) {
+  if (!owned_ || b == no_body || bodies_.fixed(a) || bodies_.fixed(b)) return;
+  if (is_shared(a) || is_shared(b) || owned_(a) != owned_(b)) share(a), share(b);
+}
+
+template <class Motion>
+void RestingContacts<Motion>::share(BodySlot id) {
+  if (is_shared(id)) return;
+  if (shared_.size() < bodies_.slots()) shared_.resize(bodies_.slots());
+  for (const BodySlot each : island(id)) {
+    if (std::exchange(shared_[each], 1) == 0 && !owned_(each)) newly_shared_.push_back(each);
+  }
+}
+
+/// What two bodies do that meet depends on all that they lean on.
+template <class Motion>
+void RestingContacts<Motion>::note_struck(const Contact& contact) {
+  if (contact.b != no_body && (leans(contact.a) || leans(contact.b))) note_shared(contact.a, contact.b);
+  for (const BodySlot id : {contact.a, contact.b}) {
+    if (id != no_body && is_shared(id) && leans(id)) concerned_.push_back(island(id));
+  }
+}
+
+template <class Motion>
+void RestingContacts<Motion>::note_concerned(const Island& island) {
+  if (island.free < 2) return;
+  const auto end = island.bodies.begin() + static_cast<std::ptrdiff_t>(island.free);
+  for (auto id = island.bodies.begin(); id != end; ++id) listener_->tell_touched(*id);
+  if (is_shared(island.bodies.front())) concerned_.emplace_back(island.bodies.begin(), end);
 }
 
 template <class Motion>
@@ -105,6 +208,7 @@ void RestingContacts<Motion>::go_on() {
   for (BodySlot id = 0; id < kept_.size(); ++id) {
     if (bodies_.alive(id)) go_on_from(id, kept_[id], slot_of);
   }
+  require_listed();
   kept_.clear();
 }
 

@@ -41,12 +41,12 @@ class Transfer {
   /// decide all later events; in mode `callback` with a law.
   bool is_divisible() const;
   /// Takes in bodies of another world with the same options and clock, by their slots there; their numbers ascend.
-  /// Those that have not entered there enter with the next step, or when their motion begins. A sensor and the body to
-  /// which it is attached come together. `known`: the slots of the bodies that were taken in before, by their numbers.
-  /// `ignored`: by numbers. Returns the slots, in the same order.
+  /// Those that have not entered there enter with the next step, or when their motion begins. What leans on each other
+  /// comes together, and so do a sensor and the body to which it is attached. `known`: the slots of the bodies that
+  /// were taken in before, by their numbers. `ignored`: by numbers. Returns the slots, in the same order.
   std::vector<BodySlot> take_in(const Transfer& from, std::span<const BodySlot> slots, std::span<const BodySlot> known,
                                 const IgnoredPairs& ignored);
-  /// Removes bodies that another world goes on with: nothing is reported.
+  /// Removes bodies that another world goes on with, whole islands of them: nothing is reported.
   void let_go(std::span<const BodySlot> slots);
   /// The overlaps of bodies that have been taken in, by their slots here.
   void go_on_overlapping(std::span<const Overlap> overlaps);
@@ -56,6 +56,8 @@ class Transfer {
   /// called by several threads at once.
   void go_on_from(BodySlot slot, const BodyProgress<Motion>& progress);
   using Resting = typename RestingPart<Motion>::Progress;
+  /// The islands of a world whose bodies belong to another one.
+  RestingPart<Motion>& islands() { return parts_.resting; }
   /// What rests of a body of a world that runs.
   Resting resting(BodySlot slot) const { return parts_.resting.progress(slot); }
   /// The same of one that has been set aside, or only stores bodies: what it has been told last.

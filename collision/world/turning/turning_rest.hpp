@@ -112,6 +112,7 @@ class TurningRest {
   static void keep(BodySlot, const Progress&) {}
   static void forget_kept() {}
   static void go_on_from(BodySlot, const Progress&, const std::function<BodySlot(BodySlot)>&) {}
+  static void require_listed() {}
   static void let_go(BodySlot) {}
   static void set_aside() {}
   static void go_on() {}

@@ -141,6 +141,36 @@ TEST_CASE("What follows from an event is told right after it, whichever domains 
   CHECK(merge.empty());
 }
 
+TEST_CASE("What one domain records of an island comes after what another one tells of it", "[parallel]") {
+  using Phase = DomainEvent::Cause::Phase;
+  // Bodies 1 and 5 lean on each other. Domain 0 owns 1, which 2 strikes, after 7 has struck 8 and 8 has struck 2.
+  const auto following = [](Kind kind, BodySlot a, DomainIndex other, DomainEvent::Cause cause) {
+    DomainEvent one = event(1, a, a, kind);
+    one.other_owner = other, one.cause = cause;
+    return one;
+  };
+  const DomainEvent::Cause struck{Phase::contacts, 1, 2}, later{Phase::ends_of_rest, 5, 9};
+  std::vector<std::vector<DomainEvent>> logs(2);
+  logs[0] = {event(1, 7, 8),
+             event(1, 2, 8),
+             event(1, 1, 2),
+             following(Kind::mark, 1, 1, struck),
+             following(Kind::wakes, 1, DomainEvent::nobody, struck),
+             following(Kind::mark, 1, 1, later)};
+  logs[1] = {following(Kind::mark, 1, 0, struck), following(Kind::wakes, 5, DomainEvent::nobody, struck),
+             following(Kind::mark, 1, 0, later), following(Kind::rests, 5, DomainEvent::nobody, later), event(1, 0, 6)};
+  EventMerge merge(std::move(logs));
+  const std::vector<std::pair<Kind, BodyId>> right{{Kind::contact, 7}, {Kind::contact, 2}, {Kind::contact, 1},
+                                                   {Kind::wakes, 1},   {Kind::wakes, 5},   {Kind::rests, 5},
+                                                   {Kind::contact, 0}};
+  for (const auto& [kind, a] : right) {
+    const DomainEvent told = merge.take_next();
+    CHECK(told.kind == kind);
+    CHECK(told.a == a);
+  }
+  CHECK(merge.empty());
+}
+
 TEST_CASE("Logs that are not of one history are refused", "[parallel]") {
   auto logs = divided({event(1, 0, 1), event(2, 2, 3)}, 2);
   logs[1].erase(logs[1].begin());

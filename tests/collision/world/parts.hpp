@@ -54,6 +54,7 @@ struct Parts final : RestingContacts<certificates::PointMotion<Degree>>::Listene
   void tell_rebound_suppressed(BodySlot a, BodySlot b) override { told.emplace_back(a, b); }
   void tell_resting(bool, const detail::RestingContact&) override {}
   void tell_passes(const detail::RestingContact&) override {}
+  void tell_touched(BodySlot) override {}
 
   WorldOptions options;
   Clock clock;

@@ -1,0 +1,108 @@
+// Bodies that lean on each other, in domains: the events are those of one world, bit for bit.
+#include "tests/collision/parallel/piles.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cstddef>
+
+namespace kds::collision::test_piles {
+namespace {
+
+using Eigen::Vector3d;
+using tests::compare_piles;
+using tests::compare_runs;
+using tests::Manner;
+using tests::Seen;
+using tests::Staging;
+
+const Vector3d gravity(0, 0, -5);
+
+/// A ball that others may come to rest on.
+BodyDescription<2> soft_ball(const Vector3d& place, const Vector3d& velocity = Vector3d::Zero()) {
+  auto ball = tests::ball<2>(0.5, place, velocity, gravity);
+  ball.restitution = 0;
+  return ball;
+}
+
+/// Rows of two to four balls that touch, all over a floor, and balls that roll against them.
+void add_rows(World<2>& world) {
+  world.add_body(tests::fixed_body<2>(Box{{60, 60, 1}}, tests::motion<2>({20, 10, -1})));
+  for (int i = 0; i < 8; ++i) {
+    for (int j = 0; j < 6; ++j) {
+      const Vector3d foot(5.0 * i + 0.5 * (j % 3), 4.0 * j, 0.5);
+      const Vector3d along = (i + j) % 2 == 0 ? Vector3d(1, 0, 0) : Vector3d(0, 1, 0);
+      for (int k = 0; k < 2 + (i + j) % 3; ++k) world.add_body(soft_ball(foot + k * along));
+      world.add_body(soft_ball(foot + Vector3d(-1.5, 1.5, 0), {1, -1, 0}));
+    }
+  }
+}
+
+/// Rows of five balls that have been pushed together, all across x = 20, and balls that roll against one end of each
+/// from far away, some after they have struck another.
+void add_struck_rows(World<2>& world) {
+  world.add_body(tests::fixed_body<2>(Box{{90, 60, 1}}, tests::motion<2>({20, 20, -1})));
+  for (int j = 0; j < 10; ++j) {
+    const double y = 4.0 * j, middle = 20 + 0.37 * (j - 4.5), side = j % 2 == 0 ? 1 : -1;
+    for (int k = -2; k <= 2; ++k) world.add_body(soft_ball({middle + k, y, 0.5}, {-0.05 * k, 0, 0}));
+    const double far = 2.5 + 4 + 0.8 * j, speed = -5.0 - (j % 3);
+    world.add_body(soft_ball({middle + side * far, y + 0.1 * (j % 4), 0.5}, {side * speed, 0, 0}));
+    auto stone = soft_ball({middle + side * (far + 2), y + 0.3, 0.5}, {side * (speed - 3), 0, 0});
+    stone.restitution = 1;
+    if (j % 3 == 0) world.add_body(stone);
+  }
+  for (int i = -10; i <= 10; ++i) {
+    for (const double y : {-4.0, 42.0}) world.add_body(soft_ball({20 + 4.0 * i, y, 0.5}));
+  }
+}
+
+/// The scene in domains with one thread and two, alone and by two processes.
+Seen run_in_all_manners(const Staging<certificates::PointMotion<2>>& scene, double halo) {
+  Seen seen;
+  for (const std::size_t domains : {2u, 3u}) {
+    for (const std::size_t processes : {1u, 2u}) {
+      Manner manner{.processes = processes, .polls = 2};
+      manner.parallel.threads = domains - 1, manner.parallel.domains = domains;
+      manner.parallel.halo = halo, manner.parallel.longest_window = 0.25;
+      compare_runs(scene, manner, seen);
+    }
+  }
+  return seen;
+}
+
+}  // namespace
+
+TEMPLATE_TEST_CASE_SIG("Domains: bodies that lean on each other have the events of one world", "[parallel]",
+                       ((int Degree), Degree), 1, 2) {
+  Seen seen;
+  compare_piles<Degree>(15, 32, 6, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 500);
+  CHECK(seen.divided > 5);
+  CHECK(seen.windows > 30);
+  CHECK(seen.corrected > 3);
+  CHECK(seen.rests > 200);
+}
+
+TEST_CASE("Domains: rows of balls across borders are divided, and none of it is run as one world", "[parallel]") {
+  const Seen seen = run_in_all_manners({tests::with_response(Response::elastic), add_rows, 2, "rows"}, 4);
+  INFO(seen.text());
+  CHECK(seen.tables == 4);
+  CHECK(seen.windows > 20);
+  CHECK(seen.rests >= 4 * 200);
+}
+
+TEST_CASE("Domains: rows of balls across a border are struck at their far ends", "[parallel]") {
+  const WorldOptions options = tests::with_response(Response::elastic);
+  Seen seen;
+  for (const double halo : {1.0, 2.0}) {
+    const Seen of_halo = run_in_all_manners({options, add_struck_rows, 3, "struck rows"}, halo);
+    seen.windows += of_halo.windows, seen.corrected += of_halo.corrected, seen.tables += of_halo.tables;
+    seen.rests += of_halo.rests, seen.whole += of_halo.whole, seen.failed += of_halo.failed;
+  }
+  INFO(seen.text());
+  CHECK(seen.tables > 3);
+  CHECK(seen.windows > 40);
+  CHECK(seen.corrected > 3);
+}
+
+}  // namespace kds::collision::test_piles
