@@ -40,6 +40,7 @@ struct BallOfPart {
 /// O(n log n) time, some 30 bytes a part.
 class PartTree {
  public:
+  /// A group of parts.
   struct Node {
     /// Around the boxes that place() puts around the parts of a body that is not turned.
     Eigen::Vector3d low, high;
