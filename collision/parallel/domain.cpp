@@ -121,7 +121,7 @@ void Domain<Motion>::begin_window() {
     }
   }
   std::sort(copies_.begin(), copies_.end(), [](const Copy& a, const Copy& b) { return a.number < b.number; });
-  if constexpr (!turns<Motion>) begin_islands();
+  begin_islands();
 }
 
 template <class Motion>
@@ -172,7 +172,7 @@ void Domain<Motion>::run(double until) {
     if (known_[slot].role == Role::deep) report_.stayed = stays_deep(bodies.path(slot).position(until));
   }
   if constexpr (turns<Motion>) note_pieces(since);
-  if constexpr (!turns<Motion>) find_islands(until);
+  find_islands(until);
   sort_by_number(fresh_);
   changes_.append(fresh_);
 }

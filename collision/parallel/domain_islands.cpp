@@ -35,14 +35,16 @@ void Domain<Motion>::add_neighbours() {
 /// An island is known wholly. What owned bodies meet has to be right as far as bodies reach that lean on them.
 template <class Motion>
 void Domain<Motion>::begin_islands() {
-  shared_copies_.clear();
-  engine_.transfer().islands().begin_shared();
-  note_islands();
-  report_.begun_outside = report_.overshoot;
-  find_islands(world_.now());
-  islands_ = std::move(next_islands_);
-  constexpr double least_room = 0.125;  // of the halo: less makes windows that are too short
-  if (!(division_.room() - report_.begun_outside > least_room * division_.halo)) report_.divisible = false;
+  if constexpr (!turns<Motion>) {
+    shared_copies_.clear();
+    engine_.transfer().islands().begin_shared();
+    note_islands();
+    report_.begun_outside = report_.overshoot;
+    find_islands(world_.now());
+    islands_ = std::move(next_islands_);
+    constexpr double least_room = 0.125;  // of the halo: less makes windows that are too short
+    if (!(division_.room() - report_.begun_outside > least_room * division_.halo)) report_.divisible = false;
+  }
 }
 
 /// Takes note of what has happened to islands with bodies of several domains.

@@ -72,6 +72,57 @@ TEST_CASE("Resting: balls slide from side to side of a pit that is a mesh, and m
   }
 }
 
+/// Squares with the side 1 in the plane z = 0, of two triangles each.
+std::shared_ptr<const Mesh> sheet(std::uint32_t length, std::uint32_t width) {
+  std::vector<Vector3d> vertices;
+  Triangles triangles;
+  for (std::uint32_t y = 0; y <= width; ++y) {
+    for (std::uint32_t x = 0; x <= length; ++x) {
+      vertices.emplace_back(x - 0.5 * length, y - 0.5 * width, 0);
+      const std::uint32_t here = y * (length + 1) + x, below = here - length - 1;
+      if (x == 0 || y == 0) continue;
+      triangles.push_back({below - 1, below, here});
+      triangles.push_back({below - 1, here, here - 1});
+    }
+  }
+  return std::make_shared<const Mesh>(std::move(vertices), std::move(triangles));
+}
+
+TEST_CASE("Resting: a ball slides alone over the faces of a mesh as over a box, and off it", "[degenerate]") {
+  const MeshShape mesh{sheet(40, 8)};
+  for (const double tilt : {0.0, 0.02}) {
+    INFO("tilt " << tilt);
+    const Eigen::Quaterniond turned = unit_quaternion(std::cos(tilt), tilt / 4, std::sin(tilt), 0);
+    const auto floor = [&](const Shape& shape, const Vector3d& at) {
+      auto body = fixed_body<2>(shape, motion<2>(turned * at));
+      body.orientation = turned;
+      return body;
+    };
+    World<2> on_box(elastic()), on_mesh(elastic()), loaded(elastic());
+    on_box.add_body(floor(Box{{20, 4, 1}}, {0, 0, -1}));
+    on_mesh.add_body(floor(mesh, {0, 0, 0}));
+    for (World<2>* world : {&on_box, &on_mesh}) {
+      const Vector3d start = turned * Vector3d(-18, -1.3, 0.6), velocity = turned * Vector3d(4, 0.3, 0);
+      world->add_body(bouncy(ball<2>(0.5, start, velocity, weight), 0));
+    }
+    for (const double t : {1.0, 3.0, 5.0}) {
+      on_box.advance_to(t), on_mesh.advance_to(t);
+      CHECK(on_mesh.resting(0, 1));
+      CHECK((on_mesh.motion(1).position(t) - on_box.motion(1).position(t)).norm() < 2e-5);
+      CHECK((on_mesh.motion(1).velocity(t) - on_box.motion(1).velocity(t)).norm() < 2e-5);
+      on_mesh.audit();
+      if (t == 3) restore(save(on_mesh), loaded);
+    }
+    CHECK(on_mesh.counters().motion_updates < 200);  // an edge is met anew, but no more
+    for (World<2>* world : {&on_mesh, &loaded}) {
+      world->advance_to(14);
+      CHECK_FALSE(world->resting(0, 1));
+      CHECK(world->motion(1).position(14)[2] < -2);
+    }
+    CHECK(on_mesh.motion(1) == loaded.motion(1));
+  }
+}
+
 TEST_CASE("Resting: a chain of balls that collapses where nothing accelerates it passes nothing through",
           "[degenerate]") {
   Tally tally;
