@@ -76,7 +76,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_in_groups(const PartG
   };
   std::vector<std::pair<std::uint32_t, std::uint32_t>> found, waiting{{0, 0}};
   while (!waiting.empty()) {
-    const auto [of_a, of_b] = waiting.back();
+    const std::uint32_t of_a = waiting.back().first, of_b = waiting.back().second;
     waiting.pop_back();
     if (!may_meet(of_a, of_b)) continue;
     const double size_a = size(a, of_a), size_b = size(b, of_b);

@@ -21,7 +21,7 @@ bool RestingContacts<Motion>::in_cluster(const Island& island) const {
 /// it leaves a face.
 template <class Motion>
 bool RestingContacts<Motion>::turns(const Island& island) const {
-  if (island.contacts.size() == 1 && gaps_.on_face(contacts_[island.contacts.front()])) return false;
+  if (island.contacts.size() == 1 && alone_on_face(contacts_[island.contacts.front()])) return false;
   return std::any_of(island.contacts.begin(), island.contacts.end(),
                      [this](Slot slot) { return gaps_.turns(contacts_[slot]); });
 }

@@ -275,13 +275,16 @@ void RestingContacts<Motion>::schedule_release(Slot slot) {
   if (together && (steady || a.motion.start == b.motion.start)) {
     return Motion::degree >= 3 ? releases_.set(slot, contact.ends) : releases_.clear(slot);
   }
-  const Motion nearer = shifted(b.motion, -slack_of(a, b, now) * contact.normal);
-  // A mesh is followed from triangle to triangle, so no farther than motions are likely to last.
+  // A mesh is followed from triangle to triangle, so no farther than motions are likely to last. When that is looked at
+  // must make no difference.
   double until = clock_.horizon;
+  double at = now;
   if (gaps_.concave(contact)) {
+    at = std::max(a.motion.start, b.motion.start);
     const double some = now + sliding_time(a.motion, b.motion, now, most_slide * gaps_.size(contact));
     if (some > now) until = std::min(until, some);
   }
+  const Motion nearer = shifted(b.motion, -slack_of(a, b, at) * contact.normal);
   const double t = first_separation(a, MovingShape<Motion>{b.shape, nearer}, now, until);
   contact.unfinished = !(t <= until) && until < clock_.horizon;
   const double ends = contact.unfinished ? until : t;
@@ -303,10 +306,42 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::first_release() 
   return first;
 }
 
+/// Whether a round body that touches no other slides over a face of a fixed mesh, and will meet nothing else of it
+/// soon: in a groove it would bounce from side to side.
+template <class Motion>
+bool RestingContacts<Motion>::alone_on_face(const Contact& contact) const {
+  if (contact.b == no_body || bodies_.fixed(contact.a) == bodies_.fixed(contact.b)) return false;
+  const bool first = bodies_.fixed(contact.b);
+  const BodySlot slider = first ? contact.a : contact.b, mesh = first ? contact.b : contact.a;
+  if (of_[slider].contacts.size() != 1 || !gaps_.on_face(contact)) return false;
+  const double now = clock_.now;
+  Motion slides = bodies_.motion(slider).restarted(now);
+  const Motion ground = bodies_.motion(mesh).restarted(now);
+  for (std::size_t i = 1; i <= Motion::degree; ++i) {
+    const Eigen::Vector3d free = i == 1 ? slides.coefficients[1] : bodies_.free_term(slider, i, now);
+    const Eigen::Vector3d apart = free - ground.coefficients[i];
+    slides.coefficients[i] = free - dot(contact.normal, apart) * contact.normal;
+  }
+  slides.coefficients[0] += (first ? -1 : 1) * approach_slack * gaps_.size(contact) * contact.normal;
+  constexpr double soon = 16;  // of the longest spans that a cluster would take
+  const double span = longest_span(slider);
+  const double until = span < never ? std::min(now + soon * span, clock_.horizon) : clock_.horizon;
+  const auto a = bodies_.moving(contact.a), b = bodies_.moving(contact.b);
+  const double t = first ? first_contact(MovingShape<Motion>{a.shape, slides}, b, now, until, ContactMode::resolved)
+                         : first_contact(a, MovingShape<Motion>{b.shape, slides}, now, until, ContactMode::resolved);
+  return !(t <= until);
+}
+
 template <class Motion>
 void RestingContacts<Motion>::process() {
+  const bool is_span = releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time);
+  if (!is_span) {
+    const Slot slot = releases_.top().slot;
+    const Contact& contact = contacts_[slot];
+    if (contact.unfinished && releases_.top().time < contact.ends) return schedule_release(slot);
+  }
   last_event_ = {last_event_.count + 1, next_time()};
-  if (releases_.empty() || (!spans_.empty() && spans_.top().time < releases_.top().time)) {
+  if (is_span) {
     const BodySlot id = spans_.top().slot;
     last_event_.is_span = true;
     last_event_.rank.a = bodies_.keys().key(id);
@@ -318,10 +353,8 @@ void RestingContacts<Motion>::process() {
   last_event_.rank = detail::RestingRank{&contacts_, &bodies_.keys()}(slot);
   if (Motion::degree >= 3 && contacts_[slot].ends <= releases_.top().time) {
     part(slot);
-  } else if (contacts_[slot].unfinished) {
-    return schedule_release(slot);
   } else if (Motion::degree >= 2 && contacts_[slot].push > 0 && gaps_.turns(contacts_[slot]) &&
-             !gaps_.on_face(contacts_[slot])) {
+             !alone_on_face(contacts_[slot])) {
     gather(bodies_.fixed(contacts_[slot].a) ? contacts_[slot].b : contacts_[slot].a);
   } else {
     drop(slot);

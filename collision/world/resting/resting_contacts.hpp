@@ -289,6 +289,9 @@ class RestingContacts {
   void note(BodySlot id);
   void drop(Slot slot);
   void schedule_release(Slot slot);
+  /// When a contact ends; `never` if that is not known.
+  double release(Slot slot) const { return contacts_[slot].unfinished ? never : releases_.time(slot); }
+  bool alone_on_face(const Contact& contact) const;
 
   // resting_islands.cpp
   void solve_all();

@@ -111,7 +111,7 @@ typename RestingContacts<Motion>::Image RestingContacts<Motion>::image() const {
     image.met.push_back(member.met);
   }
   for (BodySlot slot = 0; slot < spans_.slots(); ++slot) image.spans.push_back(spans_.time(slot));
-  for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(releases_.time(slot));
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) image.releases.push_back(release(slot));
   return image;
 }
 
@@ -140,6 +140,9 @@ void RestingContacts<Motion>::become(const Image& image) {
   spans_.resize(0);
   spans_.resize(image.spans.size());
   for (BodySlot slot = 0; slot < image.spans.size(); ++slot) spans_.set(slot, image.spans[slot]);
+  for (Slot slot = 0; slot < contacts_.size(); ++slot) {
+    if (contacts_[slot].alive && contacts_[slot].unfinished) schedule_release(slot);
+  }
 }
 
 #define KDS_INSTANTIATE(motion)                                                \

@@ -63,7 +63,7 @@ class RestingProgress {
  private:
   static std::vector<char> bytes_of(State state) {
     state.releases.clear();
-    for (auto& contact : state.contacts) contact.left_behind = -never;
+    for (auto& contact : state.contacts) contact.left_behind = -never, contact.unfinished = false;
     kds::detail::Writer writer;
     writer(state);
     return writer.take();

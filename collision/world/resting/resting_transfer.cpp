@@ -44,7 +44,7 @@ RestingProgress RestingContacts<Motion>::progress(BodySlot id) const {
     contact.a = number(contact.a), contact.b = number(contact.b);
     contact.seen = 0, contact.place = 0, contact.listed = 0;
     state.contacts.push_back(contact);
-    state.releases.push_back(releases_.time(slot));
+    state.releases.push_back(release(slot));
   }
   return {std::move(state), member.met};
 }
