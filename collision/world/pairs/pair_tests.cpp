@@ -350,11 +350,13 @@ double Pairs<Motion>::alone_until(BodySlot id, double larger,
     double apart = balls_apart_until(link.slot, larger);
     if (!(apart > now)) apart = apart_in_all_pieces(link.slot);
     const auto &shape = bodies_[id].shape, &other = bodies_[link.other].shape;
-    if (!(apart > now) && shape && other && !tumbling.is_alone(link.other)) {
-      if (!own) own = tumbling.loosely_turning(id, now);
-      apart = apart_until(*shape, *own, *other, tumbling.loosely_turning(link.other, now));
-      if (apart_.size() <= link.slot) apart_.resize(pairs_.size(), -never);
-      apart_[link.slot] = apart;
+    if constexpr (turns<Motion>) {  // clang 14 compiles it for others, too
+      if (!(apart > now) && shape && other && !tumbling.is_alone(link.other)) {
+        if (!own) own = tumbling.loosely_turning(id, now);
+        apart = apart_until(*shape, *own, *other, tumbling.loosely_turning(link.other, now));
+        if (apart_.size() <= link.slot) apart_.resize(pairs_.size(), -never);
+        apart_[link.slot] = apart;
+      }
     }
     until = std::min(until, apart);
   }
