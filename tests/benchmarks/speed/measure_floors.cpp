@@ -119,10 +119,12 @@ std::vector<Target> measure_floors(const Settings& settings) {
            static_cast<unsigned long long>(best.counters.contacts),
            static_cast<unsigned long long>(best.counters.motion_updates));
       if (first == 0) first = a_ball;
-      if (side != sides.back()) continue;
+      const bool last = side == sides.back() || best.seconds > 15;  // more of them would take minutes
+      if (!last) continue;
       targets.push_back({"auto: CPU a ball on a " + floor.name + " at " + std::to_string(side * side) +
                              " balls over that at " + std::to_string(sides.front() * sides.front()),
                          a_ball / first, '<', 3, "x"});
+      break;
     }
   }
   return targets;
