@@ -233,7 +233,7 @@ class Query : private PairTimes<Degree> {
     return place;
   }
 
-  /// The end of some contact that holds at tau; preferably a late one; tau itself if there is none.
+  /// The end of some contact that holds at tau, preferably a late one; tau itself if there is none.
   double contact_end(double tau) const {
     double end = tau;
     first_touching({tau, farthest},
