@@ -80,11 +80,12 @@ class BasicWorldListener {
   /// meetings do not end, or a callback has left them approaching.
   virtual void passes(BasicWorld<Motion>&, const PairEvent&) {}
   /// The motion of a body has changed that takes no part in the event: resting contacts pass on what happens to other
-  /// bodies, and a body that precesses begins its next piece.
+  /// bodies, and, if hears_pieces(), a body that precesses begins its next piece.
   virtual void moved(BasicWorld<Motion>&, BodyId) {}
-  /// Whether `moved` has to be called for every piece of the bodies that precess. Where this returns false, such bodies
-  /// cost less while they are far from all others (docs/turning.md); all else stays the same. Asked by advance_to().
-  virtual bool hears_pieces() const { return true; }
+  /// Whether `moved` has to be called for every piece of the bodies that precess. Else such bodies cost less while they
+  /// are far from all others (docs/turning.md), and `moved` is called for some of the pieces; all else is the same.
+  /// Asked by advance_to().
+  virtual bool hears_pieces() const { return false; }
   /// With WorldOptions.report_pieces: a piece of a body's motion has started that is not the first, or that made it
   /// enter.
   virtual void piece(BasicWorld<Motion>&, BodyId) {}

@@ -85,6 +85,7 @@ class WorldRecorder final
   void wakes_at_wall(World& world, const WallEvent& event) override {
     relay(world, EventKind::wake_at_wall, event, &Listener::wakes_at_wall);
   }
+  bool hears_pieces() const override { return true; }  // A replay shows each piece.
   void moved(World& world, BodyId id) override {
     listener_.moved(world, id);
     this->see_if_there(world, id);

@@ -75,7 +75,6 @@ class Teller final : public BasicWorldListener<M>, private Rows {
     if (pieces_) tell(piece_kind, body, world.now(), world.user_data(body));
   }
   void timer(BasicWorld<M>& world, TimerId timer) override { tell(timer_kind, timer, world.now(), 0); }
-  bool hears_pieces() const override { return false; }
   void pair_began(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_begin, a, b, t); }
   void pair_ended(BasicWorld<M>&, BodyId a, BodyId b, double t) override { tell(EventKind::pair_end, a, b, t); }
 

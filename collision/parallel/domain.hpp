@@ -152,7 +152,6 @@ class Domain final : private BasicWorldListener<Motion> {
   void wall(World&, const WallEvent& event) override;
   void piece(World&, BodyId id) override;
   void moved(World&, BodyId id) override;
-  bool hears_pieces() const override { return false; }
   using Kind = DomainEvent::Kind;
   void rebound_suppressed(World&, const PairEvent& event) override { rest(Kind::rebound_suppressed, event); }
   void rests(World&, const PairEvent& event) override { rest(Kind::rests, event); }

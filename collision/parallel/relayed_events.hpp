@@ -104,7 +104,6 @@ class RelayedEvents final : public BasicWorldListener<Motion> {
   void timer(World& world, TimerId timer) override {
     tell(world, [&] { listener_.timer(timer, world.now()); });
   }
-  bool hears_pieces() const override { return false; }
 
  private:
   template <class Tell>

@@ -1,13 +1,15 @@
-// What a scene in domains costs beside one world: gases of balls, and of bricks that precess, and balls that lie on a
-// floor and roll into each other, with one thread and with two.
+// What a scene in domains costs beside one world, with one thread and with two: gases of balls, of rings of 64
+// triangles that keep their orientation, and of rings and bricks that precess; and balls that lie on a floor and roll
+// into each other.
 //
-//     bench_parallel [DIRECTORY [BODIES...]]      -> parallel.csv; the sizes, 10 000 to 1 000 000 unless given
+//     bench_parallel [DIRECTORY [KIND...] [BODIES...]]      -> parallel.csv
 //
-// plot_parallel.gp draws it.
+// of the kinds that are named, or of all: balls, rings, spinning-rings, bricks, table; of these sizes, or of 10 000 to
+// 1 000 000. plot_parallel.gp draws it.
 //
-// The bodies (elastic_gas.hpp, table_of_balls.hpp) run until each has had some contacts; of bricks an eighth as many,
-// for as long; on floors a third as many. One world and the same scene in domains take turns; the best of the rounds
-// counts. The number of contacts and a hash of all of them must be the same.
+// The bodies (elastic_gas.hpp, table_of_balls.hpp) run until each has had some contacts; of rings and bricks an eighth
+// as many, for as long; on floors a third as many. One world and the same scene in domains take turns; the best of the
+// rounds counts. The number of contacts and a hash of all of them must be the same.
 
 #include "collision/parallel/parallel_world.hpp"
 #include "collision/world.hpp"
@@ -15,6 +17,7 @@
 #include "tests/benchmarks/elastic_gas.hpp"
 #include "tests/benchmarks/table_of_balls.hpp"
 #include "tests/benchmarks/thread_time.hpp"
+#include "tests/collision/sample_meshes.hpp"
 
 #include <sys/resource.h>
 
@@ -23,10 +26,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace {
@@ -73,26 +76,32 @@ struct Time {
   }
 };
 
-using Balls = kds::certificates::PointMotion<1>;
-using Bricks = kds::certificates::RigidMotion<1>;
+using Straight = kds::certificates::PointMotion<1>;
+using Spinning = kds::certificates::RigidMotion<1>;
 
-std::vector<BasicBodyDescription<Balls>> bodies_of(const ElasticGas& gas, Balls) { return gas.bodies; }
-
-/// In the places of the balls, turning at about the speed at which they move.
-std::vector<BasicBodyDescription<Bricks>> bodies_of(const ElasticGas& gas, Bricks) {
-  std::vector<BasicBodyDescription<Bricks>> bricks;
+/// Bodies of a shape in the places of the balls of a gas, as fast. If they turn, their surfaces do so about as fast.
+template <class Motion>
+std::vector<BasicBodyDescription<Motion>> bodies_of(const ElasticGas& gas, const Shape& shape) {
+  std::vector<BasicBodyDescription<Motion>> bodies;
   for (const auto& ball : gas.bodies) {
-    Bricks motion;
-    motion.path = ball.motion[0];
-    const Eigen::Vector3d& speed = motion.path.coefficients[1];
-    motion.angular_velocity = {2 * speed[1], 2 * speed[2], 2 * speed[0]};
-    BasicBodyDescription<Bricks> brick;
-    brick.shape = kds::collision::Box{{0.4, 0.2, 0.15}};
-    brick.motion = {motion};
-    bricks.push_back(brick);
+    BasicBodyDescription<Motion> body;
+    body.shape = shape;
+    const auto& path = ball.motion[0];
+    const Eigen::Vector3d& velocity = path.coefficients[1];
+    if constexpr (turns<Motion>) {
+      Motion motion;
+      motion.path = path;
+      motion.angular_velocity = {2 * velocity[1], 2 * velocity[2], 2 * velocity[0]};
+      body.motion = {motion};
+    } else {
+      body.motion = {path};
+    }
+    bodies.push_back(body);
   }
-  return bricks;
+  return bodies;
 }
+
+const std::vector<std::string> all_kinds{"balls", "rings", "spinning-rings", "bricks", "table"};
 
 template <class World, class Bodies>
 void run(World& world, const Bodies& bodies, double end, Time& time) {
@@ -153,16 +162,40 @@ int main(int argc, char** argv) {
          "kind,bodies,packing,threads,domains,contacts,world_entry_s,world_run_s,entry_s,run_s,speed_up,cpu_ratio,"
          "known_per_owned,computed_per_event,windows,failed,seconds_a_window\n");
     std::vector<std::size_t> sizes;
-    for (int i = 2; i < argc; ++i) sizes.push_back(std::strtoull(argv[i], nullptr, 10));
+    std::vector<std::string> kinds;
+    for (int i = 2; i < argc; ++i) {
+      const std::string word = argv[i];
+      if (word.find_first_not_of("0123456789") == std::string::npos) {
+        sizes.push_back(std::stoull(word));
+      } else if (std::find(all_kinds.begin(), all_kinds.end(), word) != all_kinds.end()) {
+        kinds.push_back(word);
+      } else {
+        throw std::invalid_argument("'" + word + "' is neither a kind nor a number of bodies");
+      }
+    }
     if (sizes.empty()) sizes = {10'000, 30'000, 100'000, 300'000, 1'000'000};
+    const auto wanted = [&](const char* kind) {
+      return kinds.empty() || std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+    };
+    const MeshShape ring{kds::collision::samples::torus(8, 4), 0.5};
+    const Box brick{{0.4, 0.2, 0.15}};
     for (const double packing : {0.25, 0.01}) {
       for (const std::size_t bodies : sizes) {
-        const auto balls = kds::benchmarks::elastic_gas(bodies, packing);
-        measure(csv, "balls", balls.options, bodies_of(balls, Balls()), packing, end_of(packing));
-        const auto bricks = kds::benchmarks::elastic_gas(bodies / 8, packing);
-        measure(csv, "bricks", bricks.options, bodies_of(bricks, Bricks()), packing, end_of(packing));
-        const auto table = kds::benchmarks::table_of_balls(bodies / 3, packing);
-        measure(csv, "table", table.options, table.bodies, packing, 2 * end_of(packing));
+        const double end = end_of(packing);
+        if (wanted("balls")) {
+          const auto gas = kds::benchmarks::elastic_gas(bodies, packing);
+          measure(csv, "balls", gas.options, gas.bodies, packing, end);
+        }
+        const auto few = kds::benchmarks::elastic_gas(bodies / 8, packing);
+        if (wanted("rings")) measure(csv, "rings", few.options, bodies_of<Straight>(few, ring), packing, end);
+        if (wanted("spinning-rings")) {
+          measure(csv, "spinning-rings", few.options, bodies_of<Spinning>(few, ring), packing, end);
+        }
+        if (wanted("bricks")) measure(csv, "bricks", few.options, bodies_of<Spinning>(few, brick), packing, end);
+        if (wanted("table")) {
+          const auto table = kds::benchmarks::table_of_balls(bodies / 3, packing);
+          measure(csv, "table", table.options, table.bodies, packing, 2 * end);
+        }
       }
     }
   } catch (const std::exception& error) {

@@ -40,6 +40,7 @@ struct Log : Turning::Listener {
   void wakes(Turning&, const PairEvent& event) override { ++woken, note("wakes", event); }
   void rebound_suppressed(Turning&, const PairEvent& event) override { note("suppressed", event); }
   void passes(Turning&, const PairEvent& event) override { ++passed, note("passes", event); }
+  bool hears_pieces() const override { return true; }
   void moved(Turning&, BodyId id) override { lines.push_back("moved " + std::to_string(id)); }
 };
 

@@ -60,6 +60,7 @@ struct Log : Turning<Degree>::Listener {
   void overlap(Turning<Degree>&, const PairEvent& e) override {
     note("overlap", e.contact.time, e.a, e.b, e.contact.normal);
   }
+  bool hears_pieces() const override { return true; }
   void moved(Turning<Degree>& world, BodyId id) override {
     note("moved", world.now(), id, id, world.motion(id).angular_velocity);
   }

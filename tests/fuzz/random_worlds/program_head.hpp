@@ -62,6 +62,7 @@ struct Player : WorldListener<Degree> {
   void wakes_at_wall(W&, const WallEvent& e) override { at_wall("wakes_at_wall", e); }
   void pair_began(W&, BodyId a, BodyId b, double t) override { note("pair_began", a, b, number[b], {.time = t}); }
   void pair_ended(W&, BodyId a, BodyId b, double t) override { note("pair_ended", a, b, number[b], {.time = t}); }
+  bool hears_pieces() const override { return true; }
   void moved(W& w, BodyId a) override { note("moved", a, 0, number[0], {.time = w.now()}); }
   void piece(W& w, BodyId a) override { note("piece", a, 0, number[0], {.time = w.now()}); }
   void timer(W& w, TimerId timer) override {
