@@ -65,7 +65,7 @@ struct Turns {
   double tangential_restitution = 0;
   double rolling_friction = 0;
   bool tumbles = false;        ///< it precesses: world/turning/tumbling.hpp knows its inertia
-  double turns_until = never;  ///< and when the present piece of its motion ends
+  double turns_until = never;  ///< and when the present piece of its motion ends; -never if it is left alone
 };
 struct TurnsNot {};
 

@@ -55,9 +55,16 @@ Engine<Motion>::Engine(BasicWorld<Motion>& world, const WorldOptions& options, L
       queries_(parts_, motions_, guard_, callers_),
       transfer_(parts_, membership_, edits_, guard_, callers_) {}
 
+/// Each piece is an event of its own.
 template <class Motion>
 bool Engine<Motion>::step(double limit) {
   guard_.require_idle("World::step");
+  look_at_all();
+  return next_step(limit);
+}
+
+template <class Motion>
+bool Engine<Motion>::next_step(double limit) {
   membership_.fit();
   if (limit == never && callers_.idle_for_ever) return false;
   if (limit < callers_.idle_until) {
@@ -209,6 +216,7 @@ inline typename Engine<Motion>::Ran Engine<Motion>::run_broad_phase(double until
 template <class Motion>
 double Engine<Motion>::next_time() {
   guard_.require_idle("World::next_time");
+  look_at_all();
   if (callers_.next_time != -never) return callers_.next_time;
   if (clock_.now == callers_.now && parts_.any_work()) return callers_.now;
   require_end<Motion>("World::next_time", callers_.looked_for_until, parts_.options.broad_phase,
@@ -246,27 +254,35 @@ void Engine<Motion>::advance_to(double t) {
     Tumbling<Motion>& of;
     ~Unheard() { of.set_unheard_until(-never); }
   } unheard{parts_.tumbling};
-  if (!calls_.hears_pieces()) unheard.of.set_unheard_until(t);
-  try {
-    while (step(t)) {
-    }
-  } catch (...) {
-    if (guard_.whole()) look_at_all();  // The listener has thrown.
-    throw;
+  if (calls_.hears_pieces()) {
+    look_at_all();
+  } else {
+    unheard.of.set_unheard_until(t);
+  }
+  while (next_step(t)) {
   }
 }
 
 template <class Motion>
 const Motion& Engine<Motion>::motion(BodyId id) {
   const BodySlot slot = bodies().slot_of(id);
-  if (parts_.tumbling.is_alone(slot)) look_at_all();
+  if constexpr (turns<Motion>) motions_.read(slot);
   return bodies().motion(slot);
 }
 
-/// From then on to the end of the call none is left alone: a listener that has asked once may always ask.
+/// A listener that has asked for all once may do so at each event: until the end of the call none is left alone.
+template <class Motion>
+void Engine<Motion>::read_all() {
+  if constexpr (turns<Motion>) {
+    if (guard_.stepping()) return look_at_all();
+    motions_.read_all();
+  }
+}
+
 template <class Motion>
 void Engine<Motion>::look_at_alone() {
   parts_.tumbling.set_unheard_until(-never);
+  callers_.forget_next_event();
   guard_.change([&] {
     if constexpr (turns<Motion>) motions_.look_at_all();
   });
@@ -287,15 +303,17 @@ bool Engine<Motion>::advance_for(double budget_seconds, double t) {
     ~Reset() { of.reset(); }
   } reset{deadline_};
   deadline_ = deadline;
-  while (step(t)) {
+  look_at_all();
+  while (next_step(t)) {
     if (late()) return false;
   }
   return true;
 }
 
 template <class Motion>
-void Engine<Motion>::audit(double t) const {
+void Engine<Motion>::audit(double t) {
   guard_.require_whole("World::audit");
+  read_all();
   parts_.audit(t);
 }
 

@@ -34,16 +34,19 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  /// What callers change and ask: bodies that have been left alone (turning/turning_pieces.cpp) are looked at first.
+  /// What callers change and ask. Bodies that have been left alone (turning/turning_pieces.cpp) are looked at before
+  /// anything is changed, and have their present pieces before these are read.
   Edits<Motion>& edits() { return look_at_all(), edits_; }
-  const Queries<Motion>& queries() { return look_at_all(), queries_; }
-  WorldCounters counters() { return look_at_all(), parts_.all_counters(); }
+  const Queries<Motion>& queries() { return read_all(), queries_; }
+  WorldCounters counters() { return read_all(), parts_.all_counters(); }
   const Motion& motion(BodyId id);
   double now() const { return queries_.now(); }
   Transfer<Motion>& transfer() { return transfer_; }
   const Transfer<Motion>& transfer() const { return transfer_; }
   const WorldParts<Motion>& parts() const { return parts_; }
   const Bodies<Motion>& bodies() const { return parts_.bodies; }
+  /// Before bodies(), parts() and transfer() are read.
+  void read_all();
 
   void advance_to(double t);
   bool step(double limit);
@@ -51,7 +54,7 @@ class Engine {
   double next_time();
   bool process();
   void extend_horizon(double horizon);
-  void audit(double t) const;
+  void audit(double t);
 
   // snapshot.cpp
   struct Image;  // engine_image.hpp
@@ -79,6 +82,7 @@ class Engine {
   bool process(Pairs<Motion>&) { return response_.process_pair(), true; }
   bool process(SelfContacts<Motion>&) { return response_.process_self_contact(), true; }
   bool process(Unbounded<Motion>&) { return false; }  // It has none.
+  bool next_step(double limit);
   /// Bodies that precess and have been left alone get the pieces that they would have otherwise.
   void look_at_all() {
     if constexpr (turns<Motion>) {

@@ -50,6 +50,10 @@ class MotionUpdates final : private RestingListener<Motion> {
   void look_at_tested() requires(turns<Motion>);
   /// All of them get these.
   void look_at_all() requires(turns<Motion>);
+  /// Its motion, or those of all, are about to be read: what was left alone has the piece that it would have otherwise,
+  /// and stays alone.
+  void read(BodySlot slot) requires(turns<Motion>);
+  void read_all() requires(turns<Motion>);
 
  private:
   /// Changes the motion of a body that takes no part in the event, and reports it.
@@ -83,6 +87,7 @@ class MotionUpdates final : private RestingListener<Motion> {
   Pairs<Motion>& pairs_;
   const std::unique_ptr<BroadPhase<Motion::degree>>& broad_phase_;
   BodySlot reported_ = no_body;
+  double read_at_ = -never;  ///< when those that are alone were read, if none has been left alone since
 };
 
 }  // namespace kds::collision

@@ -117,6 +117,7 @@ void Engine<Motion>::archive(Archive& archive) {
     become(loaded);
   } else {
     guard_.require_idle("World::archive");
+    look_at_all();
     Image saved = image();
     this->archive(archive, saved);
   }

@@ -241,7 +241,7 @@ template <class Motion>
 void Pairs<Motion>::test(Slot slot) {
   Pair& pair = pairs_[slot];
   if constexpr (turns<Motion>) {
-    const double end = horizon(pair);  // before now if one of them is left alone
+    const double end = horizon(pair);  // -never if one of them is left alone
     const bool apart = end < clock_.now || apart_in_all_pieces(slot) > end;
     if (apart && !pair.fresh && !pair.overlapping) return set_contact(slot, never);
   }

@@ -73,7 +73,8 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 /// 3. States and pieces depend on contacts and on calls of the user only, not on windows, broad phases or snapshots.
 ///
 /// Where nobody is told of pieces, those of a body that is far from all others need not be taken when they begin: it is
-/// left alone for a while, and its pieces are made one after the other when it is looked at again. They are the same.
+/// left alone for a while, and its pieces are made one after the other when it is looked at again, or when its motion
+/// is read. They are the same.
 ///
 /// Cost: nothing for other bodies; 1 us a piece and O(log n), beside the tests of its pairs; 0.5 us a piece of a body
 /// that is left alone, and of a symmetric top that is 1 us for all of its pieces together.
@@ -114,14 +115,14 @@ class Tumbling {
   /// The piece that next_body() has from next_time() on.
   Piece take_next();
 
-  /// Up to when nobody is told of pieces; -never if everybody always is.
+  /// The end of the present call, if nobody is told of the pieces until then, else -never.
   double unheard_until() const { return unheard_until_; }
   void set_unheard_until(double t) { unheard_until_ = t; }
   /// Whether a body whose piece ends now can be left alone until t, and stays so near to the path of that piece that
   /// nothing but rounding is between the two: less than path_rounding of its radius.
   bool can_leave_alone(BodySlot slot, double t) const;
   /// Leaves it alone: next_time() is then, and it keeps the motion that it has. Precondition: nothing needs its motion
-  /// until then, except after catch_up().
+  /// until then, except after catch_up() or catch_up_alone().
   void leave_alone(BodySlot slot, double t);
   /// Whether one that is alone stays so at least until its piece would be over, if it is looked at at t; then it is, or
   /// earlier.
@@ -132,6 +133,8 @@ class Tumbling {
   LooselyTurning<Motion::degree> loosely_turning(BodySlot slot, double t) const;
   /// It is alone no longer: the piece that it has just before t.
   Motion catch_up(BodySlot slot, double t);
+  /// The piece that it has just before t. It stays alone for as long as it was to be.
+  Motion catch_up_alone(BodySlot slot, double t);
 
   /// A body with this orientation has a contact at t: advances its free rotation to t. The next three functions are
   /// about that time: angular velocity, and inverse tensor of inertia in the axes of the world; an impulse.

@@ -15,7 +15,10 @@ void MotionUpdates<Motion>::turn_on() requires(turns<Motion>) {
   // What is alone no longer may be left alone again, but not for less than its present piece lasts.
   if (tumbling_.is_alone(slot)) bodies_.move(slot, tumbling_.catch_up(slot, clock_.now));
   const double until = left_alone_until(slot);
-  if (until > std::max(clock_.now, bodies_[slot].turns_until)) return tumbling_.leave_alone(slot, until);
+  if (until > std::max(clock_.now, bodies_[slot].turns_until)) {
+    read_at_ = -never;
+    return tumbling_.leave_alone(slot, until);
+  }
   turn(slot, bodies_[slot].turns_until > clock_.now ? bodies_.motion(slot) : tumbling_.take_next().motion);
   reports_.add(Reports::Kind::moved, bodies_.id_of(slot), bodies_.id_of(slot), {.time = clock_.now});
 }
@@ -28,7 +31,9 @@ double MotionUpdates<Motion>::left_alone_until(BodySlot slot) requires(turns<Mot
   const bool seen = !(tumbling_.unheard_until() > now) || options_.report_pairs || volumes_.any_from_callers() ||
                     !bodies_.attachments().empty() || !resting_.empty();
   if (seen || tumbling_.is_alone(slot) || !bodies_[slot].entered) return now;
-  double until = std::min(tumbling_.unheard_until(), pairs_.alone_until(slot, path_rounding, tumbling_));
+  // Also beyond the end of the call, since nothing may ask for it then, or for its motion alone.
+  const double longest = std::max(tumbling_.unheard_until(), clock_.horizon);
+  double until = std::min(longest, pairs_.alone_until(slot, path_rounding, tumbling_));
   if (options_.walls && until > now) {
     const double radius = (1 + path_rounding) * bodies_[slot].bounding_radius;
     until = std::min(until, earliest_wall_time_of_all(bodies_.path(slot), radius, *options_.walls, now));
@@ -55,11 +60,24 @@ void MotionUpdates<Motion>::look_at_tested() requires(turns<Motion>) {
   });
 }
 
+/// All that happens at this instant has happened, or is about to: so a piece that begins now has begun.
 template <class Motion>
 void MotionUpdates<Motion>::look_at_all() requires(turns<Motion>) {
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) {
-    if (tumbling_.is_alone(slot)) look_at(slot);
+    if (tumbling_.is_alone(slot)) turn(slot, tumbling_.catch_up(slot, next_up(clock_.now)));
   }
+}
+
+template <class Motion>
+void MotionUpdates<Motion>::read(BodySlot slot) requires(turns<Motion>) {
+  if (tumbling_.is_alone(slot)) bodies_.move(slot, tumbling_.catch_up_alone(slot, next_up(clock_.now)));
+}
+
+template <class Motion>
+void MotionUpdates<Motion>::read_all() requires(turns<Motion>) {
+  if (!tumbling_.any_alone() || read_at_ == clock_.now) return;
+  for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) read(slot);
+  read_at_ = clock_.now;
 }
 
 /// The body goes on along its path and turns otherwise. Pairs with a body that is alone wait until that is looked at.
