@@ -183,6 +183,11 @@ class Bodies {
     movers_[slot].motion = path_of(motion);
     if constexpr (turns<Motion>) motions_[slot] = motion;
   }
+  /// Whether it precesses, and its motion is a piece that may have passed (turning/tumbling.hpp).
+  bool left_alone(BodySlot slot) const {
+    if constexpr (turns<Motion>) return bodies_[slot].turns_until == -never;
+    return false;
+  }
   /// Half the acceleration that the body has without contacts: that of the motion that callers gave last.
   Eigen::Vector3d free_acceleration(BodySlot slot) const requires(Motion::degree <= 2) {
     if constexpr (Motion::degree == 2) {

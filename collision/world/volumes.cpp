@@ -161,7 +161,7 @@ void Volumes<Motion>::audit(double t) const {
   if (next_time() < t) throw AuditFailure("World: a bounding volume should have been renewed");
   for (BodySlot slot = 0; slot < bodies_.slots() && any_ends(); ++slot) {
     if (!bodies_[slot].entered || !bodies_.in_broad_phase(slot)) continue;
-    if (bodies_[slot].turns_until == -never) continue;  // It is left alone: its box is of a piece that has passed.
+    if (bodies_.left_alone(slot)) continue;  // Its box is of a piece that has passed.
     if ((slot < ends_.slots() ? ends_.time(slot) : never) == end(slot)) continue;
     throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) +
                        ": the end of its bounding volume is not in the queue");

@@ -91,7 +91,7 @@ void WallTimes<Motion>::audit(double t) const {
                          ": " + what);
     };
     if (known < t && wall_[slot] != none_yet) fail(wall_[slot], "it should have been reached");
-    if (bodies_[slot].turns_until == -never) continue;  // It is left alone: its time is of a piece that has passed.
+    if (bodies_.left_alone(slot)) continue;  // Its time is of a piece that has passed.
     for (int wall = 0; wall < 6; ++wall) {
       const double time = exact_time(slot, wall, clock_.horizon);
       if (time < never && time < known) fail(wall, "it is reached before the body's time");
