@@ -5,6 +5,7 @@
 #include "collision/response/turning_impulse.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/turning/collapse.hpp"
+#include "collision/world/turning/pressing.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -66,6 +67,59 @@ double TurningBounces<Motion>::rebound(double approach, double pressed, double r
   return std::max({restitution * approach, least * approach, 0.5 * options_.shortest_flight * pressed});
 }
 
+/// The acceleration with which the gap at a contact closes, by which the two are pressed together; negative where they
+/// are lifted off. Of what presses because they turn, so much as a shortest flight is to make good.
+template <class Motion>
+double TurningBounces<Motion>::pressed(BodySlot a, const Motion& motion_a, BodySlot b, const Motion& motion_b,
+                                       const Contact& contact) const {
+  const Vector3d& n = contact.normal;
+  const Vector3d &turns_a = motion_a.angular_velocity, &turns_b = motion_b.angular_velocity;
+  const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
+  const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
+  const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
+                          : ball(b) ? motion_b.path.coefficients[0]
+                                    : contact.point;
+  // What presses because bodies turn does so while they turn by a small angle. A speed for the whole of a shortest
+  // flight would multiply the energy of bodies that spin fast.
+  double most_turn = 0x1p-3;  // rad
+  Vector3d acceleration = rates.acceleration(point), velocity = rates.velocity(point);
+  // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off. The
+  // normal of two edges that cross turns with both, and the faster, the smaller their angle is.
+  Vector3d normal_turns = Vector3d::Zero();
+  double rounded = 0;  // what presses since the sides of capsules are round
+  if (bodies_.unbounded(a) || bodies_.unbounded(b)) {
+    // The normal is that of the half-space, which does not turn.
+  } else if (contact.feature_a.kind == Feature::Kind::face) {
+    normal_turns = cross(turns_a, n);
+  } else if (contact.feature_b.kind == Feature::Kind::face) {
+    normal_turns = cross(turns_b, n);
+  } else if (bodies_[a].shape && bodies_[b].shape) {
+    auto edge_a = contact_edge(bodies_[a].shape->shape, contact.feature_a);
+    auto edge_b = contact_edge(bodies_[b].shape->shape, contact.feature_b);
+    if (edge_a && edge_b) {
+      const auto in_world = [&](const Motion& motion, const Vector3d& x) {
+        const Eigen::Matrix3d axes = motion.rotation(contact.time).matrix();
+        return Vector3d(axes.col(0) * x[0] + axes.col(1) * x[1] + axes.col(2) * x[2]);
+      };
+      edge_a->along = in_world(motion_a, edge_a->along);
+      edge_b->along = in_world(motion_b, edge_b->along);
+      if (const auto edges = CrossingEdges::of(*edge_a, *edge_b, turns_a, turns_b, n)) {
+        const Vector3d way_a = edges->radius_a * n, way_b = edges->radius_b * n;  // from the axes to the contact and on
+        acceleration += cross(turns_a, cross(turns_a, way_a)) + cross(turns_b, cross(turns_b, way_b));
+        velocity += cross(turns_a, way_a) + cross(turns_b, way_b);
+        normal_turns = edges->normal_rate;
+        rounded = (edges->radius_a + edges->radius_b) * squared_norm(normal_turns);
+        most_turn *= edges->sine;
+      }
+    }
+  }
+  const double pressed = -dot(n, acceleration) - 2 * dot(normal_turns, velocity) + rounded;
+  const double turn = options_.shortest_flight * std::max(norm(turns_a), norm(turns_b));
+  if (!(turn > most_turn)) return pressed;
+  const double of_paths = -dot(n, motion_b.path.acceleration(contact.time) - motion_a.path.acceleration(contact.time));
+  return of_paths + most_turn / turn * (pressed - of_paths);
+}
+
 /// The motions of two bodies that meet after their impulse. They do not change where the two do not approach, unless
 /// one of them bends: then the other, which is within the tolerance, begins a new piece that leaves it.
 template <class Motion>
@@ -83,30 +137,8 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
   if (std::abs(approach) <= rates.noise(contact.point)) approach = std::max(approach, 0.0);
   result.approach = approach >= 0 || bending;
   if (!result.approach) return result;
-  // A side of a box that turns carries its normal along, so that what slides on it is pressed to it or lifted off.
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
-  const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
-                          : ball(b) ? motion_b.path.coefficients[0]
-                                    : contact.point;
-  Vector3d normal_turns = Vector3d::Zero();
-  if (bodies_.unbounded(a) || bodies_.unbounded(b)) {
-    // The normal is that of the half-space, which does not turn.
-  } else if (contact.feature_a.kind == Feature::Kind::face) {
-    normal_turns = cross(motion_a.angular_velocity, n);
-  } else if (contact.feature_b.kind == Feature::Kind::face) {
-    normal_turns = cross(motion_b.angular_velocity, n);
-  }
-  double pressed = -dot(n, rates.acceleration(point)) - 2 * dot(normal_turns, rates.velocity(point));
-  // What presses because bodies turn does so while they turn by a small angle. A speed for the whole of a shortest
-  // flight would multiply the energy of bodies that spin fast.
-  constexpr double most_turn = 0x1p-3;  // rad
-  const double turn =
-      options_.shortest_flight * std::max(norm(motion_a.angular_velocity), norm(motion_b.angular_velocity));
-  if (turn > most_turn) {
-    const double of_paths =
-        -dot(n, motion_b.path.acceleration(contact.time) - motion_a.path.acceleration(contact.time));
-    pressed = of_paths + most_turn / turn * (pressed - of_paths);
-  }
+  double pressed = this->pressed(a, motion_a, b, motion_b, contact);
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
   for (const Motion* motion : {&motion_a, &motion_b}) {

@@ -27,6 +27,7 @@ class TurningBounces {
   void process_wall();
 
  private:
+  double pressed(BodySlot a, const Motion& motion_a, BodySlot b, const Motion& motion_b, const Contact& contact) const;
   double rebound(double approach, double pressed, double restitution) const;
   bool rests_now(BodySlot a, BodySlot b, const Contact& contact);
   bool precesses(BodySlot slot) const { return tumbling_.has(slot) && !resting_.carries(slot); }

@@ -1,0 +1,71 @@
+// How strongly bodies that turn are pressed together at a contact.
+#pragma once
+
+#include "collision/narrow_phase/contact.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape.hpp"
+#include "collision/vectors.hpp"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <variant>
+
+namespace kds::collision {
+
+/// An edge of a shape, or the axis of a capsule, which is its radius away from its side.
+struct ContactEdge {
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< in the axes of the body, of any length
+  double radius = 0;
+};
+
+/// None where the feature is no edge, or the shape does not tell where it is (compounds).
+inline std::optional<ContactEdge> contact_edge(const Shape& shape, const Feature& feature) {
+  if (feature.kind != Feature::Kind::edge) return std::nullopt;
+  if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
+    return ContactEdge{Eigen::Vector3d::UnitZ(), capsule->radius};
+  }
+  if (const auto* const hull = std::get_if<ConvexHull>(&shape)) {
+    const auto points = hull->polytope->points();
+    return ContactEdge{points[feature.second] - points[feature.first]};
+  }
+  if (const auto* const mesh = std::get_if<MeshShape>(&shape)) {
+    const auto points = mesh->mesh->vertices();
+    return ContactEdge{points[feature.second] - points[feature.first]};
+  }
+  if (!std::holds_alternative<Box>(shape)) return std::nullopt;
+  ContactEdge edge;  // Its two vertices differ in one bit, that of its axis.
+  for (int d = 0; d < 3; ++d) {
+    if ((feature.first ^ feature.second) >> d & 1u) edge.along[d] = 1;
+  }
+  return edge;
+}
+
+/// The contact of two edges that cross, each turning with its body.
+///
+/// Let x_a and x_b be points of the two, n the unit normal of both, and R the sum of the radii. The gap is f = n . (x_b
+/// - x_a) - R, whatever points these are, so f'' = n . (x_b - x_a)'' + 2 n' . (x_b - x_a)' - R |n'|^2 where x_b - x_a =
+/// R n, as at the contact.
+struct CrossingEdges {
+  Eigen::Vector3d normal_rate;  ///< n'
+  double radius_a, radius_b;
+  double sine;  ///< of the angle between the two
+
+  /// `a` and `b` in the axes of the world. None where the two are so nearly parallel that they are not one point.
+  static std::optional<CrossingEdges> of(const ContactEdge& a, const ContactEdge& b, const Eigen::Vector3d& turns_a,
+                                         const Eigen::Vector3d& turns_b, const Eigen::Vector3d& normal) {
+    constexpr double least_sine = 0x1p-10;
+    const Eigen::Vector3d across = cross(a.along, b.along);
+    const double length = norm(across), sine = length / (norm(a.along) * norm(b.along));
+    if (!(sine > least_sine)) return std::nullopt;
+    const Eigen::Vector3d rate =
+        (cross(cross(turns_a, a.along), b.along) + cross(a.along, cross(turns_b, b.along))) / length;
+    const Eigen::Vector3d turned = rate - dot(rate, normal) * normal;
+    return CrossingEdges{dot(across, normal) < 0 ? Eigen::Vector3d(-turned) : turned, a.radius, b.radius, sine};
+  }
+};
+
+}  // namespace kds::collision

@@ -1,0 +1,111 @@
+// Edges that slide on each other while their bodies turn are pressed together, or lifted off, by how they turn.
+#include "collision/world.hpp"
+#include "collision/world/turning/pressing.hpp"
+#include "tests/support/random_numbers.hpp"
+#include "tests/support/random_vectors.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <cstddef>
+
+namespace test_pressed_edges {
+namespace {
+
+using namespace kds;
+using namespace kds::collision;
+using certificates::RigidMotion;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using kds::tests::Random;
+using kds::tests::random_vector;
+
+using Turning = BasicWorld<RigidMotion<1>>;
+
+/// A line that turns and moves.
+struct Line {
+  Vector3d point, along, velocity, turns;
+  Vector3d point_at(double t) const { return point + t * velocity; }
+  Vector3d along_at(double t) const { return Eigen::AngleAxisd(t * turns.norm(), turns.normalized()) * along; }
+};
+
+/// How far apart two lines are.
+double distance(const Line& a, const Line& b, double t) {
+  const Vector3d n = a.along_at(t).cross(b.along_at(t)).normalized();
+  return std::abs(n.dot(b.point_at(t) - a.point_at(t)));
+}
+
+struct Counter final : Turning::Listener {
+  std::size_t contacts = 0;
+  void contact(Turning&, const PairEvent&) override { ++contacts; }
+};
+
+/// A capsule with a side of 0.6, free of forces.
+void add(Turning& world, const Vector3d& place, const Vector3d& velocity, const Quaterniond& orientation,
+         const Vector3d& turns, double restitution) {
+  Turning::Description body{.shape = Capsule{0.2, 0.3}};
+  RigidMotion<1> motion{{{place, velocity}}};
+  motion.orientation = orientation.normalized();
+  motion.angular_velocity = turns;
+  body.motion = {motion};
+  body.restitution = restitution;
+  world.add_body(body);
+}
+
+}  // namespace
+
+TEST_CASE("the gap of two edges that cross closes with the acceleration that is calculated", "[turning]") {
+  Random random(5);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    Line a{random_vector(random), random_vector(random), random_vector(random), 3 * random_vector(random)};
+    Line b{random_vector(random), random_vector(random), random_vector(random), 3 * random_vector(random)};
+    // The points are those where the two are nearest, so that b - a is along the normal.
+    const Vector3d normal = a.along.cross(b.along).normalized();
+    if (a.along.normalized().cross(b.along.normalized()).norm() < 0.2) continue;
+    const double apart = std::abs(normal.dot(b.point - a.point));
+    const Vector3d n = normal.dot(b.point - a.point) < 0 ? Vector3d(-normal) : normal;
+    b.point = a.point + apart * n;
+    const auto edges = CrossingEdges::of({a.along, apart / 4}, {b.along, 3 * apart / 4}, a.turns, b.turns, n);
+    REQUIRE(edges.has_value());
+    const double calculated =
+        2 * edges->normal_rate.dot(b.velocity - a.velocity) - apart * edges->normal_rate.squaredNorm();
+    const double h = 1e-4;
+    const double measured = (distance(a, b, h) - 2 * distance(a, b, 0) + distance(a, b, -h)) / (h * h);
+    CHECK(calculated == Approx(measured).epsilon(1e-3).margin(1e-3));
+  }
+}
+
+TEST_CASE("edges of boxes, hulls, meshes and capsules are where their features say", "[turning]") {
+  const Shape box = Box{Vector3d(1, 2, 3)};
+  for (std::uint32_t d = 0; d < 3; ++d) {
+    const auto edge = contact_edge(box, Feature::edge(5u & ~(1u << d), 5u | 1u << d));
+    REQUIRE(edge.has_value());
+    CHECK(edge->along == Vector3d::Unit(d));
+  }
+  CHECK(contact_edge(Capsule{0.2, 0.3}, Feature::edge(0, 1))->radius == 0.2);
+  CHECK_FALSE(contact_edge(box, Feature::face(1)).has_value());
+  CHECK_FALSE(contact_edge(Sphere{1}, {}).has_value());
+  CHECK_FALSE(CrossingEdges::of({Vector3d::UnitX()}, {Vector3d(1, 1e-4, 0)}, Vector3d::Zero(), Vector3d::Zero(),
+                                Vector3d::UnitZ())
+                  .has_value());
+}
+
+TEST_CASE("capsules whose sides slide crosswise while they spin part in flights that can be seen", "[turning]") {
+  for (const double restitution : {0.9, 0.6, 0.3, 0.0}) {
+    CAPTURE(restitution);
+    Counter counter;
+    Turning world({.response = Response::elastic}, &counter);
+    add(world, {-0.603, -0.781, 0.484}, {0.0036, -0.0298, 1.33}, {-0.589, 0.377, 0.4497, -0.5559},
+        {-1.49, 0.555, -4.29}, restitution);
+    add(world, {-0.481, -0.502, 0.798}, {-0.326, 0.248, -0.347}, {0.6168, 0.5874, 0.4484, 0.2712},
+        {0.853, -0.684, 3.81}, restitution);
+    while (world.now() < 1 && counter.contacts < 1000) world.step(1);
+    CHECK(world.now() == 1);
+    CHECK(counter.contacts > 0);
+  }
+}
+
+}  // namespace test_pressed_edges
