@@ -2,10 +2,15 @@
 #pragma once
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include <algorithm>
+#include <utility>
 
 namespace kds::collision::turning_rest {
 
@@ -38,10 +43,35 @@ class BodyFrame {
   double length_;
 };
 
-/// The greatest speed of a point of a body, seen from what moves with a velocity.
+/// How far a point of a body is at most from an axis through its centre: of balls, boxes, capsules and hulls; of other
+/// shapes the radius, which balls, that may be null, have in all directions. `axis`: unit, in the axes of the body.
+inline double reach_about(const PlacedShape* shape, double radius, const Vector3d& axis) {
+  if (!shape) return radius;
+  double most = 0;
+  if (const auto box = rounded_box_of(shape->shape)) {
+    const Vector3d& h = box->half_extents;
+    for (const auto& [y, z] : {std::pair(h[1], h[2]), {h[1], -h[2]}, {-h[1], h[2]}, {-h[1], -h[2]}}) {
+      most = std::max(most, norm(cross(axis, Vector3d(h[0], y, z))));
+    }
+    return most + box->radius;
+  }
+  const Polytope* const hull = polytope_of(shape->shape);
+  if (!hull) return radius;
+  for (const Vector3d& x : hull->points()) most = std::max(most, norm(cross(axis, x)));
+  return most;
+}
+
+/// Whether no point of a body is faster than a speed, seen from what moves with a velocity. A rod that rolls over its
+/// long edges has slow points alone, however long it is.
 template <class Motion>
-double surface_speed(const Motion& motion, const Vector3d& velocity, double radius, double t) {
-  return norm(motion.path.velocity(t) - velocity) + norm(motion.angular_velocity) * radius;
+bool all_slower(const Motion& motion, const Vector3d& velocity, const PlacedShape* shape, double radius, double speed,
+                double t) {
+  const double flies = norm(motion.path.velocity(t) - velocity), rate = norm(motion.angular_velocity);
+  if (flies + rate * radius <= speed) return true;
+  if (flies > speed || !shape) return false;
+  const BodyFrame frame(motion, t);
+  const Vector3d axis = frame.back(frame.origin() + motion.angular_velocity) / rate;
+  return flies + rate * reach_about(shape, radius, axis) <= speed;
 }
 
 }  // namespace kds::collision::turning_rest
