@@ -6,6 +6,7 @@
 #include "collision/narrow_phase/turning/jets.hpp"
 #include "collision/narrow_phase/turning/three_vectors.hpp"
 #include "collision/narrow_phase/turning/turning_view.hpp"
+#include "collision/shapes/support.hpp"
 
 #include <Eigen/Core>
 
@@ -88,27 +89,59 @@ class TriangleGap : private TrianglesSeen<Degree> {
 
   /// How long all corners of b are beyond all corners of a, along the direction of the widest gap.
   double open_for(double stretch) const {
-    const VectorJet n = direction();
-    const double rate = k_ == 0 ? view_.rate_a : (k_ == 1 ? view_.rate_b : view_.rate_a + view_.rate_b);
-    const TurningBounds bounds(view_, rate, hull_a_.radius, hull_b_.radius, stretch);
-    Jet base = dot(n, view_.way);
-    base.value -= bounds.rounding;
-    const Jets of_a = jets(n, view_.spin_a, a_), of_b = jets(n, view_.spin_b, b_);
+    const Corners corners = this->corners(direction(), stretch);
+    const auto &of_a = corners.of_a, &of_b = corners.of_b;
     // The pair of corners that is nearest is mostly the one that meets first, and then the others need one value each.
     std::size_t near_a = 0, near_b = 0;
     for (std::size_t i = 1; i < 3; ++i) {
       if (of_a.value[i] > of_a.value[near_a]) near_a = i;
       if (of_b.value[i] < of_b.value[near_b]) near_b = i;
     }
-    const auto gap = [&](std::size_t i, std::size_t j) {
-      return Jet{base.value + of_b.value[j] - of_a.value[i], base.rate + of_b.rate[j] - of_a.rate[i],
-                 base.bend + of_b.bend[j] - of_a.bend[i]};
-    };
-    double wait = positive_for(gap(near_a, near_b), bounds.third, stretch);
+    double wait = positive_for(corners.gap(near_a, near_b), corners.bounds.third, stretch);
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) wait = std::min(wait, positive_for(gap(i, j), bounds.third, wait));
+      for (std::size_t j = 0; j < 3; ++j) {
+        wait = std::min(wait, positive_for(corners.gap(i, j), corners.bounds.third, wait));
+      }
     }
     return wait;
+  }
+
+  /// The same where the widest gap is zero but for roundings: how long they are apart, but for some roundings of that
+  /// time at first, in which they may penetrate by roundings, and then part all the while: each corner of b that may be
+  /// where they touch moves away from each such corner of a. 0 if that is not known.
+  ///
+  /// Of two such corners let f be the gap, at least -e at first, r a bound from below on f' at first, and f(x) >= -e +
+  /// x g(x) with g(x) = r + bend x / 2 - third x^2 / 6. While g > r / 8, f > 0 from 8 e / r on; and until then f' > r /
+  /// 2, which is asked, too. The points that the two share then are as combinations of such corners of a, and of b, so
+  /// that they part at least that fast.
+  double parts_for(double stretch) const {
+    constexpr double least_sine = 0x1p-4;   // of edges: the unit vector across both is off by no more than is charged
+    constexpr double least_part = 0x1p-20;  // of the speeds: what parts as slowly may not do so in other roundings
+    constexpr double near = 4 * parallel_sine;  // of the radii: farther corners are none of those that touch
+    const VectorJet n = direction();
+    if (!(norm(n.value) >= least_sine)) return 0;
+    const Corners corners = this->corners(n, stretch);
+    const TurningBounds& bounds = corners.bounds;
+    const double touching = near * (hull_a_.radius + hull_b_.radius);
+    const double slowest = least_part * (norm(view_.way.rate) + view_.rate_a * hull_a_.radius +  //
+                                         view_.rate_b * hull_b_.radius);
+    double wait = stretch, parted = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 3; ++j) {
+        const Jet f = corners.gap(i, j);
+        if (f.value > touching) {
+          wait = std::min(wait, positive_for(f, bounds.third, wait));
+          continue;
+        }
+        const double rate = f.rate - bounds.rate_rounding, bend = f.bend - bounds.bend_rounding;
+        if (!(rate > slowest)) return 0;
+        const double x = 8 * std::max(0.0, -f.value) / rate;
+        if (!(x * (std::max(0.0, -bend) + 0.5 * bounds.third * x) < 0.5 * rate)) return 0;
+        parted = std::max(parted, x);
+        wait = std::min(wait, positive_for({0.875 * rate, 0.5 * bend, -bounds.third / 3}, 0, wait));
+      }
+    }
+    return wait > parted ? wait : 0;
   }
 
   /// The same, along a direction that stays as it is in a: for bodies that turn nearly alike, of which open_for() does
@@ -162,6 +195,25 @@ class TriangleGap : private TrianglesSeen<Degree> {
     const Eigen::Vector3d first = n.rate + once;
     const Eigen::Vector3d second = n.bend + cross(n.rate + first, w);
     return {dots(n.value, points), dots(first, points), dots(second, points)};
+  }
+
+  /// What tells how far each corner of b is beyond each of a, along a vector that turns, less what roundings make of
+  /// it.
+  struct Corners {
+    TurningBounds bounds;  ///< for a stretch
+    Jet base;
+    Jets of_a, of_b;
+    Jet gap(std::size_t i, std::size_t j) const {
+      return {base.value + of_b.value[j] - of_a.value[i], base.rate + of_b.rate[j] - of_a.rate[i],
+              base.bend + of_b.bend[j] - of_a.bend[i]};
+    }
+  };
+  Corners corners(const VectorJet& n, double stretch) const {
+    const double rate = k_ == 0 ? view_.rate_a : (k_ == 1 ? view_.rate_b : view_.rate_a + view_.rate_b);
+    const TurningBounds bounds(view_, rate, hull_a_.radius, hull_b_.radius, stretch);
+    Jet base = dot(n, view_.way);
+    base.value -= bounds.rounding;
+    return {bounds, base, jets(n, view_.spin_a, a_), jets(n, view_.spin_b, b_)};
   }
 
   void find_widest() {

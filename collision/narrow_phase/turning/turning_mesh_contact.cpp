@@ -4,6 +4,7 @@
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape_forms.hpp"
 
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <variant>
@@ -35,9 +36,14 @@ auto with_search(const MeshBody<Degree>& a, const MeshBody<Degree>& b, const Ask
 
 template <int Degree>
 double TurningMeshContact<Degree>::first_contact(const Body& a, const Body& b, double t0, double horizon,
-                                                 ContactMode mode, FoundTouch*) {
+                                                 ContactMode mode, FoundTouch* found) {
   if (!(t0 <= horizon)) return never;
-  return with_search<Degree>(a, b, [&](const auto& search) { return search.first_contact(t0, horizon, mode); });
+  return with_search<Degree>(a, b, [&](const auto& search) {
+    std::optional<NodePair> foremost;
+    const double t = search.first_contact(t0, horizon, mode, found ? &foremost : nullptr);
+    if (foremost) *found = {.time = t, .triangle_a = foremost->a, .triangle_b = foremost->b};
+    return t;
+  });
 }
 
 template <int Degree>
@@ -58,9 +64,10 @@ double TurningMeshContact<Degree>::first_separation(const Body& a, const Body& b
 }
 
 template <int Degree>
-Contact TurningMeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch&) {
+Contact TurningMeshContact<Degree>::contact_at(const Body& a, const Body& b, double t, const FoundTouch& found) {
   return with_search<Degree>(a, b, [&](const auto& search) -> Contact {
-    TurningTouch touch = search.touch_at(t);
+    const NodePair foremost{found.triangle_a, found.triangle_b};
+    TurningTouch touch = search.touch_at(t, found.time == t ? &foremost : nullptr);
     if (const Polytope* const hull = polytope_of(b.shape.shape)) {
       touch.feature_b = hull->feature_of(touch.feature_b);
     }

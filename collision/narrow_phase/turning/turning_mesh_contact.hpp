@@ -29,11 +29,14 @@ namespace kds::collision {
 /// Mode `resolved`: a pair of triangles that penetrates counts if it approaches where it touches, faster than by
 /// roundings. Otherwise it is passed over until it has parted and meets again, or until its overlap has grown by more
 /// than roundings, which is decided in doubles; where they do not tell, for a short time, and then twice the time each.
+/// So of two triangles that touch but for roundings, and part, doubles tell all that counts: whether they penetrate at
+/// first is not asked.
 template <int Degree>
 struct TurningMeshContact {
   using Motion = certificates::RigidMotion<Degree>;
   using Body = MovingShape<Motion>;
 
+  /// In FoundTouch the triangles are leaves of the trees, of b the only one where it is no mesh.
   static double first_contact(const Body& a, const Body& b, double t0, double horizon, ContactMode mode, FoundTouch*);
   /// A time before which there is no contact; t0 where the balls around the two overlap.
   static double apart_until(const Body& a, const Body& b, double t0, double horizon, PairMemory&);

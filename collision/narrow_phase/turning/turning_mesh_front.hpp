@@ -42,14 +42,49 @@ double TurningMeshSearch<Degree, Side>::Front::next() {
         break;
       case Known::contact:
         look(item.time);
-        if (mode_ == ContactMode::transparent || counts(item.nodes)) return item.time;
+        met_ = item.nodes;
+        if (mode_ == ContactMode::transparent || touch_now(item.nodes).approach > 0) return item.time;
         pass_over(item);
         break;
       case Known::entered:
+        met_.reset();
         if (entered_counts(item)) return item.time;
     }
   }
   return never;
+}
+
+/// All that waits for a later time is apart until then, but for pairs that were passed over. Where faces lie on faces,
+/// or where what penetrates does not approach, other pairs have a say in where the two touch.
+template <int Degree, class Side>
+std::optional<NodePair> TurningMeshSearch<Degree, Side>::Front::foremost() {
+  if (!met_) return std::nullopt;
+  const double t = view_.time;
+  TurningTouch best = touch_now(*met_);
+  bool alone = best.approach > 0 && best.area == 0;
+  const auto compare = [&](NodePair leaves) {
+    if (leaves == *met_) return;
+    const TurningTouch touch = touch_now(leaves);
+    alone = alone && touch.area == 0;
+    if (touch.approach > best.approach || (touch.approach == best.approach && leaves < *met_))
+      best = touch, met_ = leaves;
+  };
+  std::vector<NodePair> near = passed_over_;
+  for (; alone && !queue_.empty() && queue_.top().time == t; queue_.pop()) {
+    const Item& item = queue_.top();
+    if (item.known == Known::contact) {
+      compare(item.nodes);
+    } else if (item.known != Known::entered) {
+      near.push_back(item.nodes);
+    }
+  }
+  if (alone && !near.empty()) {
+    search_.every_near(view_, 0, std::move(near), [&](NodePair leaves, const Pair& pair) {
+      if (search_.ways(pair, view_).penetrate(t)) compare(leaves);
+      return !alone;
+    });
+  }
+  return alone ? met_ : std::nullopt;
 }
 
 /// When a pair that penetrates and does not approach is to be looked at again: just after it has parted, or when it is
@@ -83,6 +118,7 @@ auto TurningMeshSearch<Degree, Side>::passed_over(const Pair& pair, const View& 
 
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::pass_over(const Item& item) {
+  passed_over_.push_back(item.nodes);
   const auto passed = search_.passed_over(search_.pair(item.nodes), view_, horizon_, item.tries);
   push(passed.until, item.nodes, Known::apart_until, passed.proven ? 0 : item.tries + 1);
 }
@@ -177,7 +213,15 @@ void TurningMeshSearch<Degree, Side>::Front::visit_triangles_together() {
 /// than what waits in the queue.
 template <int Degree, class Side>
 void TurningMeshSearch<Degree, Side>::Front::visit_triangles(const Visit& visit) {
-  const double until = search_.pair(visit.nodes).apart_until(view_, horizon_);
+  const Pair pair = search_.pair(visit.nodes);
+  double until = view_.time;
+  if constexpr (tells_triangles) {
+    // What parts is passed over in mode `resolved`, so that it need not be told exactly whether it penetrates at first.
+    const bool parting_counts = mode_ == ContactMode::transparent || search_.b_.solid();
+    until = parting_counts ? pair.apart_until(view_, horizon_) : pair.clear_until(view_, horizon_);
+  } else {
+    until = pair.apart_until(view_, horizon_);
+  }
   if (until > visit.from) {
     push(until, visit.nodes, Known::apart_until);
   } else {
@@ -204,11 +248,6 @@ void TurningMeshSearch<Degree, Side>::Front::visit_exactly(NodePair nodes, int t
     return;
   }
   if (until < horizon_) push(until, nodes, Known::apart_until, std::min(tries + 1, most_tries));
-}
-
-template <int Degree, class Side>
-bool TurningMeshSearch<Degree, Side>::Front::counts(NodePair nodes) const {
-  return search_.touch(nodes, search_.pair(nodes), view_).approach > 0;
 }
 
 /// Notes when from now on the pair enters the one or the other solid at flush edges.

@@ -42,8 +42,12 @@ class TurningMeshSearch {
         units_a_(a.units()),
         units_b_(b.units()) {}
 
-  double first_contact(double t0, double horizon, ContactMode mode) const {
-    return Front(*this, t0, horizon, mode).next();
+  /// `foremost`, unless it is null, gets the leaves of which touch_at() would tell, if that is known.
+  double first_contact(double t0, double horizon, ContactMode mode, std::optional<NodePair>* foremost) const {
+    Front front(*this, t0, horizon, mode);
+    const double t = front.next();
+    if (foremost && t != never) *foremost = front.foremost();
+    return t;
   }
 
   bool in_contact(double t) const {
@@ -77,7 +81,9 @@ class TurningMeshSearch {
     return never;
   }
 
-  TurningTouch touch_at(double t) const;
+  /// Of the pair of triangles that approaches fastest among those that penetrate just after t. `foremost`: what
+  /// first_contact() has told, or null.
+  TurningTouch touch_at(double t, const NodePair* foremost) const;
 
  private:
   /// Whether floats tell of pairs of leaves more than their boxes do.
@@ -115,6 +121,9 @@ class TurningMeshSearch {
       visit_all();
     }
     double next();
+    /// After next() has told of a contact: the pair of leaves that approaches fastest there, if that alone tells where
+    /// the two touch.
+    std::optional<NodePair> foremost();
 
    private:
     void push(double t, NodePair nodes, Known known, int tries = 0) {
@@ -141,7 +150,7 @@ class TurningMeshSearch {
     void visit_triangles_together();
     void visit_exactly(NodePair nodes, int tries);
     void note_entries(NodePair nodes, const Pair& pair, double until);
-    bool counts(NodePair nodes) const;
+    TurningTouch touch_now(NodePair leaves) const { return search_.touch(leaves, search_.pair(leaves), view_); }
     void pass_over(const Item& item);
     bool entered_counts(const Item& item);
 
@@ -151,6 +160,8 @@ class TurningMeshSearch {
     View view_;  ///< at the time that is looked at, or not long before
     std::priority_queue<Item, std::vector<Item>, std::greater<>> queue_;
     std::vector<Visit> visits_, leaves_;  ///< of visit_all()
+    std::vector<NodePair> passed_over_;   ///< leaves, each perhaps more than once
+    std::optional<NodePair> met_;         ///< the leaves of the contact that was found
     FlushEntries entries_;
     double last_entered_ = -never;  ///< when it was last looked at what has entered
   };
@@ -215,8 +226,13 @@ class TurningMeshSearch {
   bool every_near(const View& view, double margin, const Ask& ask) const {
     std::vector<NodePair> list;
     list.reserve(64);
+    nodes_.first([&](NodePair nodes) { list.push_back(nodes); });
+    return every_near(view, margin, std::move(list), ask);
+  }
+  /// The same of those in a list of pairs of nodes.
+  template <class Ask>
+  bool every_near(const View& view, double margin, std::vector<NodePair> list, const Ask& ask) const {
     const auto put = [&](NodePair nodes) { list.push_back(nodes); };
-    nodes_.first(put);
     while (!list.empty()) {
       const auto together = nodes_.take_together(list, std::identity());
       const unsigned apart = nodes_apart_by(margin, view, together.nodes);
@@ -334,11 +350,12 @@ void TurningMeshSearch<Degree, Side>::move_to_middle(TurningTouch& touch, const 
 }
 
 template <int Degree, class Side>
-TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t) const {
+TurningTouch TurningMeshSearch<Degree, Side>::touch_at(double t, const NodePair* foremost) const {
   TurningTouch best;
   NodePair of_best{};
   std::vector<TurningTouch> flat;
   const View view = this->view(t);
+  if (foremost) return touch(*foremost, pair(*foremost), view);
   for (const double when : {t, next_down(t)}) {
     bool any = false;
     const View then = this->view(when);

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -73,11 +74,19 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   double apart_until(const TurningView<Degree>& view, double horizon) const {
     if (this->slack() > 0) return Base::apart_until(view, horizon);
     const TriangleGap<Degree> gap(view, this->hull_a_, this->hull_b_);
-    if (!(gap.width() > this->error(view))) return view.time;
-    const double all = (horizon - view.time) * (1 + 0x1p-40);
-    const double stretch = view.stretch(this->hull_a_.radius + this->hull_b_.radius, all);
-    double wait = gap.open_for(stretch);
-    if (wait < stretch && view.turn_alike()) wait = std::max(wait, gap.open_seen_from_a(stretch, all));
+    return gap.width() > this->error(view) ? apart_until(gap, view, horizon) : view.time;
+  }
+  /// The same, or a time until which they are apart but for some roundings at first, in which they part: what has just
+  /// bounced. Not of edges in the plane of the other: these may enter a solid that no triangle penetrates.
+  double clear_until(const TurningView<Degree>& view, double horizon) const {
+    const TriangleGap<Degree> gap(view, this->hull_a_, this->hull_b_);
+    const double error = this->error(view);
+    if (gap.width() > error) return apart_until(gap, view, horizon);
+    if (!(gap.width() >= -error) || !view.certain) return view.time;
+    const double stretch = look_ahead(view, horizon), wait = gap.parts_for(stretch);
+    if (!(wait > 0)) return view.time;
+    const auto [near_a, near_b] = near_planes(view);
+    if (std::popcount(near_a) > 1 || std::popcount(near_b) > 1) return view.time;
     return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
   }
 
@@ -182,6 +191,20 @@ class TurningTriangles : public TurningHulls<Degree, TriangleHull> {
   /// The longest stretch that there is.
   double longest(const TurningView<Degree>& view) const {
     return this->stretch(view, std::numeric_limits<double>::max());
+  }
+
+  /// For how long of the time up to the horizon a view is good.
+  double look_ahead(const TurningView<Degree>& view, double horizon) const {
+    return stretch(view, (horizon - view.time) * (1 + 0x1p-40));
+  }
+  /// Of those between which there is a gap.
+  double apart_until(const TriangleGap<Degree>& gap, const TurningView<Degree>& view, double horizon) const {
+    const double stretch = look_ahead(view, horizon);
+    double wait = gap.open_for(stretch);
+    if (wait < stretch && view.turn_alike()) {
+      wait = std::max(wait, gap.open_seen_from_a(stretch, (horizon - view.time) * (1 + 0x1p-40)));
+    }
+    return wait > horizon - view.time ? never : after_wait(view.time, wait, stretch);
   }
 
   /// Of the ways of planes.

@@ -2,10 +2,15 @@
 #pragma once
 
 #include "certificates/turning/turned_orientation.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+
+#include <algorithm>
+#include <optional>
 
 namespace kds::collision::turning_rest {
 
@@ -38,10 +43,45 @@ class BodyFrame {
   double length_;
 };
 
-/// The greatest speed of a point of a body, seen from what moves with a velocity.
+/// How far a point of a box, a capsule or a hull is at most from an axis through its centre: unit, in the axes of the
+/// body. Nothing of other shapes, or of a ball, that may be null.
+inline std::optional<double> reach_about(const PlacedShape* shape, const Vector3d& axis) {
+  if (!shape) return std::nullopt;
+  double most = 0;
+  if (const auto box = rounded_box_of(shape->shape)) {
+    const Vector3d& h = box->half_extents;
+    for (const double y : {-h[1], h[1]}) {
+      for (const double z : {-h[2], h[2]}) most = std::max(most, norm(cross(axis, Vector3d(h[0], y, z))));
+    }
+    return most + box->radius;
+  }
+  const Polytope* const hull = polytope_of(shape->shape);
+  if (!hull) return std::nullopt;
+  for (const Vector3d& x : hull->points()) most = std::max(most, norm(cross(axis, x)));
+  return most;
+}
+
+/// Whether a body is thin: no point of it is farther from one of its axes than a quarter of its radius. When it rolls
+/// over its long edges all of its points are slow, while a bound by the radius tells that it is fast, again and again.
+inline bool is_thin(const PlacedShape* shape, double radius) {
+  for (int d = 0; d < 3; ++d) {
+    const auto reach = reach_about(shape, Vector3d::Unit(d));
+    if (reach && *reach <= 0.25 * radius) return true;
+  }
+  return false;
+}
+
+/// Whether no point of a body is faster than a speed, seen from what moves with a velocity: by a bound, but for thin
+/// bodies.
 template <class Motion>
-double surface_speed(const Motion& motion, const Vector3d& velocity, double radius, double t) {
-  return norm(motion.path.velocity(t) - velocity) + norm(motion.angular_velocity) * radius;
+bool all_slower(const Motion& motion, const Vector3d& velocity, const PlacedShape* shape, double radius, double speed,
+                double t) {
+  const double flies = norm(motion.path.velocity(t) - velocity), rate = norm(motion.angular_velocity);
+  if (flies + rate * radius <= speed) return true;
+  if (flies > speed || !is_thin(shape, radius)) return false;
+  const BodyFrame frame(motion, t);
+  const Vector3d axis = frame.back(frame.origin() + motion.angular_velocity) / rate;
+  return flies + rate * reach_about(shape, axis).value_or(radius) <= speed;
 }
 
 }  // namespace kds::collision::turning_rest

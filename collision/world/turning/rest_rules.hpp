@@ -20,9 +20,16 @@ inline constexpr double calm_energy = 4;
 /// times n / calm_neighbours, where that factor is at least 1 and at most most_driven (8 cm/s on Earth).
 inline constexpr double calm_neighbours = 2;
 inline constexpr double most_driven = 4;
+/// A hull that lies on a face with more corners than this is driven by the flights of all of them: with n corners, of
+/// which n / calm_corners is at most most_driven, it is calm up to that speed times n / calm_corners, and held over the
+/// square of that times the distance. A coin of 16 corners that is dropped flat rocks at 2.1 cm/s for ever, one of 32
+/// at 4.9; those of up to 10 mostly get slower than 2 cm/s by themselves.
+inline constexpr double calm_corners = 8;
 
 /// Without friction nothing brakes what slides, or turns about the normal: two such bodies come to rest on each other
-/// only where that is slower than this part of the speed of a calm body (20 um/s on Earth); else they slide on.
+/// only where that is slower than this part of the speed of a calm body (20 um/s on Earth), or would be if their
+/// weights pressed them for calm_flights on all that they touch; else they slide on. So what lies in a corner, and hops
+/// off the one side along the other, is held; what nothing holds back is not.
 inline constexpr double smooth_slip = 0x1p-10;
 
 /// In shortest flights: for how long bodies have to be calm, so that by then they have touched wherever they can; and
@@ -45,7 +52,8 @@ inline constexpr double memory = 64;
 /// their normals have a greater cosine than that of the angle between them.
 inline constexpr double same_place = 0x1p-5;
 inline constexpr double same_side = 0.9;
-/// How many places of a pair are remembered. When there is one more, the oldest is forgotten.
+/// How many places of a pair are remembered. When there is one more, the one that is nearest to it is forgotten: the
+/// others go on to tell on which sides the two touch.
 inline constexpr std::size_t most_places = 16;
 
 }  // namespace kds::collision::turning_rest

@@ -247,7 +247,7 @@ bool TurningBounces<Motion>::respond(BodySlot a, BodySlot b, const Contact& cont
 /// Whether two bodies that have met come to rest.
 template <class Motion>
 bool TurningBounces<Motion>::rests_now(BodySlot a, BodySlot b, const Contact& contact) {
-  const bool rests = resting_.comes_to_rest(a, b, contact);
+  const bool rests = resting_.comes_to_rest(a, b, contact, [this](BodySlot slot) { return mobility(slot); });
   counters_.rebounds_suppressed += rests;
   return rests;
 }

@@ -2,21 +2,36 @@
 
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
+#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
 #include "collision/world/turning/rest_rules.hpp"
-#include "kds/audit.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <string>
+#include <cstddef>
 #include <utility>
 
 namespace kds::collision {
 
 using Eigen::Vector3d;
 using namespace turning_rest;
+
+namespace {
+
+/// How much faster flights make a body if it lies on the face that has the most corners; balls may be null.
+double driven_by_corners(const PlacedShape* shape) {
+  const Polytope* const hull = shape ? polytope_of(shape->shape) : nullptr;
+  std::size_t most = 0;
+  if (hull) {
+    for (const auto& face : hull->structure().faces) most = std::max(most, face.size());
+  }
+  return std::clamp(static_cast<double>(most) / calm_corners, 1.0, most_driven);
+}
+
+}  // namespace
 
 template <class Motion>
 typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlot b, int) const {
@@ -188,6 +203,7 @@ typename TurningRest<Motion>::Scale TurningRest<Motion>::scale(Key key) const {
     if (bodies_.fixed(slot)) continue;
     scale.acceleration = std::max(scale.acceleration, acceleration(slot));
     scale.size = std::min(scale.size, bodies_[slot].bounding_radius);
+    scale.driven = std::max(scale.driven, driven_by_corners(bodies_[slot].shape));
   }
   return scale;
 }
@@ -195,7 +211,8 @@ typename TurningRest<Motion>::Scale TurningRest<Motion>::scale(Key key) const {
 /// How far from each other bodies may be that hold each other, in units of length.
 template <class Motion>
 double TurningRest<Motion>::holding_distance(const Scale& scale) const {
-  return std::min(scale.acceleration * flight_ * flight_, largest_holding_distance * scale.size);
+  const double flight = scale.driven * flight_;
+  return std::min(scale.acceleration * flight * flight, largest_holding_distance * scale.size);
 }
 
 /// Up to which speed of its fastest point a body is calm.
@@ -224,24 +241,11 @@ template <class Motion>
 bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Carrier& carrier) const {
   const Motion& motion = bodies_.motion(slot);
   if (bodies_.fixed(slot)) return moves_with(motion, carrier);
-  const Scale scale{acceleration, bodies_[slot].bounding_radius};
+  const Scale scale{acceleration, bodies_[slot].bounding_radius, driven_by_corners(bodies_[slot].shape)};
   const auto others = slot < of_.size() ? static_cast<double>(of_[slot].others.size()) : 0;
   const double driven = std::clamp(others / calm_neighbours, 1.0, most_driven);
   const Vector3d velocity = carrier.velocity_at(clock_.now);
-  return surface_speed(motion, velocity, scale.size, clock_.now) <= driven * calm_speed(scale);
-}
-
-/// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
-/// whole bodies count, since the corners of a body that rocks slide to and fro.
-template <class Motion>
-bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
-  const Motion& a = bodies_.motion(key.first);
-  const Motion& b = bodies_.motion(key.second);
-  const Scale scale = this->scale(key);
-  const Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
-  const double turn = dot(a.angular_velocity - b.angular_velocity, normal);
-  const double slip = norm(way - dot(way, normal) * normal) + std::abs(turn) * scale.size;
-  return slip > smooth_slip * calm_speed(scale);
+  return all_slower(motion, velocity, bodies_[slot].shape, scale.size, driven * calm_speed(scale), clock_.now);
 }
 
 template <class Motion>
@@ -257,12 +261,17 @@ void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
     return !lasts ||
            (norm(x - contact.point) <= same_place * scale.size && dot(place.normal, contact.normal) >= same_side);
   });
-  if (places.size() >= most_places) places.erase(places.begin());
+  if (places.size() >= most_places) {
+    const auto way = [&](const detail::TouchedPlace& place) { return norm(a.out(place.on_a) - contact.point); };
+    places.erase(
+        std::min_element(places.begin(), places.end(), [&](const auto& x, const auto& y) { return way(x) < way(y); }));
+  }
   places.push_back({a.back(contact.point), b.back(contact.point), contact.normal, t});
 }
 
 template <class Motion>
-bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact) {
+bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact,
+                                        const MobilityOf& mobility) {
   if constexpr (Motion::degree < 2) return false;  // nothing presses bodies together
   const double g = scale({a, b}).acceleration;
   const double t = clock_.now;
@@ -291,7 +300,8 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
   const auto look = [&](BodySlot slot) {
     if (!bodies_.fixed(slot)) of_[slot].looked = t;
   };
-  const Group linked = find_group(bodies_.fixed(a) ? b : a);
+  Group linked = find_group(bodies_.fixed(a) ? b : a);
+  note_what_slides_on(linked, mobility);
   if (linked.any_busy() && !patient) {
     look(a), look(b);
     return false;
@@ -358,32 +368,6 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     of_[slot].since = never;
     listener_->take_up(slot, carried_by(of_[slot].carrier, bodies_.motion(slot), t));
   }
-}
-
-template <class Motion>
-void TurningRest<Motion>::audit(double) const {
-  if (!solved()) return;
-  const auto need = [&](bool right, BodySlot slot, const char* what) {
-    if (!right) throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) + ": " + what);
-  };
-  std::size_t resting = 0;
-  for (const auto& [key, pair] : pairs_) {
-    const Carrier& carrier = of_[bodies_.fixed(key.first) ? key.second : key.first].carrier;
-    for (const BodySlot slot : {key.first, key.second}) {
-      need(bodies_.entered(slot), slot, "it rests on another, and is not there");
-      need(!pair.rests || moves_with(bodies_.motion(slot), carrier), slot,
-           "it rests, and does not move with what it rests on");
-      need(!pair.rests || of_[slot].rests || bodies_.fixed(slot), slot, "it rests on another, and is awake");
-    }
-    resting += pair.rests;
-  }
-  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
-    if (!of_[slot].rests) continue;
-    const auto& others = of_[slot].others;
-    need(bodies_.entered(slot) && !bodies_.fixed(slot), slot, "it rests, and is not there");
-    need(!others.empty(), slot, "it rests on nothing");
-  }
-  if (resting != resting_) throw AuditFailure("World: pairs that rest are miscounted");
 }
 
 #define KDS_INSTANTIATE(motion) template class TurningRest<motion>;

@@ -127,13 +127,13 @@ class TurningRest {
   bool keeps_apart(Slot) const { return true; }
   double next_contact(BodySlot, BodySlot) const { return never; }
 
-  /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
-  /// group, have come to rest.
-  bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact);
   /// Two bodies are about to meet. Returns whether one of them rests and the impulse decides whether it wakes. It does
   /// not if the other is calm: that body may lie on it soon, and until then bounces off it as off a fixed body.
   bool meet(BodySlot a, BodySlot b);
   using MobilityOf = std::function<Mobility(BodySlot)>;
+  /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
+  /// group, have come to rest.
+  bool comes_to_rest(BodySlot a, BodySlot b, const collision::Contact& contact, const MobilityOf& mobility);
   /// To be called if meet() returned true, with the impulse on b as if the resting body were fixed, and the angular
   /// impulses on both. If the resting body and those that it lies on take the impulse without moving, nothing changes;
   /// if not, the bodies that it moves wake, and those that they have held. Returns whether any wakes.
@@ -224,14 +224,16 @@ class TurningRest {
   struct Scale {
     double acceleration = 0;  ///< the greatest
     double size = never;      ///< the smallest bounding radius
+    double driven = 1;        ///< how much faster than one corner's flights those of many make them
   };
   struct Group {
     std::vector<BodySlot> bodies;  ///< none of them fixed
     std::vector<Load> loads;
     std::vector<Foothold> footholds;
-    std::vector<Key> pairs;   ///< of each foothold
-    std::vector<char> busy;   ///< by body: whether it cannot rest yet, by itself or by what it lies on
-    std::vector<char> leans;  ///< by body: whether it leans on one that is busy
+    std::vector<Key> pairs;              ///< of each foothold
+    std::vector<char> busy;              ///< by body: whether it cannot rest yet, by itself or by what it lies on
+    std::vector<char> leans;             ///< by body: whether it leans on one that is busy
+    std::vector<std::uint32_t> sliding;  ///< places of bodies that slide without friction
     bool any_busy() const;
   };
 
@@ -257,6 +259,7 @@ class TurningRest {
   std::optional<turning_rest::Carrier> common_carrier(BodySlot a, BodySlot b) const;
   bool calm(BodySlot slot, double acceleration, const turning_rest::Carrier& carrier) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
+  void note_what_slides_on(Group& group, const MobilityOf& mobility) const;
   void note(Key key, const collision::Contact& contact);
   Group find_group(BodySlot first, bool resting = false);
   bool ready(BodySlot slot, double acceleration) const;

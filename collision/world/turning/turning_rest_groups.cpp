@@ -7,6 +7,7 @@
 #include "collision/world/turning/turning_rest.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -70,6 +71,40 @@ bool TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
   wake_only(woken);
   solve();
   return !woken.empty();
+}
+
+/// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
+/// whole bodies count, since the corners of a body that rocks slide to and fro.
+template <class Motion>
+bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
+  const Motion& a = bodies_.motion(key.first);
+  const Motion& b = bodies_.motion(key.second);
+  const Scale scale = this->scale(key);
+  const Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  const double turn = dot(a.angular_velocity - b.angular_velocity, normal);
+  const double slip = norm(way - dot(way, normal) * normal) + std::abs(turn) * scale.size;
+  return slip > smooth_slip * calm_speed(scale);
+}
+
+/// Of bodies that slide without friction those are busy that would slide on, too, if the weights of all pressed them on
+/// what they touch.
+template <class Motion>
+void TurningRest<Motion>::note_what_slides_on(Group& group, const MobilityOf& mobility) const {
+  if (group.sliding.empty()) return;
+  std::vector<StruckBody> bodies;
+  for (std::size_t i = 0; i < group.bodies.size(); ++i) {
+    const BodySlot slot = group.bodies[i];
+    const Motion& motion = bodies_.motion(slot);
+    const Scale scale{acceleration(slot), bodies_[slot].bounding_radius};
+    const Vector3d velocity = motion.path.velocity(clock_.now) - carrier(slot).velocity_at(clock_.now);
+    bodies.push_back({.mobility = mobility(slot),
+                      .velocity = {velocity + calm_flights * flight_ * group.loads[i].acceleration,  //
+                                   motion.angular_velocity},
+                      .size = scale.size,
+                      .still_speed = smooth_slip * calm_speed(scale)});
+  }
+  takes_impact(bodies, group.footholds);
+  for (const std::uint32_t place : group.sliding) group.busy[place] = group.busy[place] || !bodies[place].still();
 }
 
 template <class Motion>
@@ -194,11 +229,12 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
         const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
         if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
         if (!std::exchange(links, true) && !bodies_.fixed(other)) visit(other);
-        if (!rests && (((friction == 0 || smooth) && slides(key, place.normal)) ||
-                       (bodies_.fixed(other) && !moves_with(bodies_.motion(other), of_[slot].carrier)))) {
-          busy.push_back(of_[slot].place);
-          if (!bodies_.fixed(other)) busy.push_back(of_[other].place);
-        }
+        const auto list = [&](std::vector<std::uint32_t>& places) {
+          places.push_back(of_[slot].place);
+          if (!bodies_.fixed(other)) places.push_back(of_[other].place);
+        };
+        if (!rests && bodies_.fixed(other) && !moves_with(bodies_.motion(other), of_[slot].carrier)) list(busy);
+        if (!rests && (friction == 0 || smooth) && slides(key, place.normal)) list(group.sliding);
         Vector3d x = 0.5 * (on_a + on_b);
         for (const auto& [slot_of, frame] : {std::pair<BodySlot, const BodyFrame&>{key.first, a}, {key.second, b}}) {
           if (bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;

@@ -1,13 +1,15 @@
-// Rest in worlds of bodies that turn, as plain data: made, read and checked.
+// Rest in worlds of bodies that turn: its audit, and all of it as plain data, made, read and checked.
 #include "collision/motions.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/turning_rest.hpp"
+#include "kds/audit.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 
 namespace kds::collision {
 
@@ -91,6 +93,32 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
     need(least >= 0 && least < never, "its speed is not >= 0");
     need(image::is_past(time, now) && (i == 0 || blows[i - 1].time <= time), "is out of order");
   }
+}
+
+template <class Motion>
+void TurningRest<Motion>::audit(double) const {
+  if (!solved()) return;
+  const auto need = [&](bool right, BodySlot slot, const char* what) {
+    if (!right) throw AuditFailure("World: body " + std::to_string(bodies_.id_of(slot)) + ": " + what);
+  };
+  std::size_t resting = 0;
+  for (const auto& [key, pair] : pairs_) {
+    const turning_rest::Carrier& carrier = of_[bodies_.fixed(key.first) ? key.second : key.first].carrier;
+    for (const BodySlot slot : {key.first, key.second}) {
+      need(bodies_.entered(slot), slot, "it rests on another, and is not there");
+      need(!pair.rests || moves_with(bodies_.motion(slot), carrier), slot,
+           "it rests, and does not move with what it rests on");
+      need(!pair.rests || of_[slot].rests || bodies_.fixed(slot), slot, "it rests on another, and is awake");
+    }
+    resting += pair.rests;
+  }
+  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
+    if (!of_[slot].rests) continue;
+    const auto& others = of_[slot].others;
+    need(bodies_.entered(slot) && !bodies_.fixed(slot), slot, "it rests, and is not there");
+    need(!others.empty(), slot, "it rests on nothing");
+  }
+  if (resting != resting_) throw AuditFailure("World: pairs that rest are miscounted");
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class TurningRest<motion>;
