@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 
 namespace kds::collision {
@@ -63,7 +64,8 @@ class CapsuleTouch {
   void add_inside();
   void add_triangle(double end, bool sharp);
   void add_parallelogram(std::size_t edge);
-  void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+  void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                const std::optional<Eigen::Vector3d>& far = std::nullopt);
   void add_point(const Eigen::Vector3d& at);
   void add(const Piece& piece);
   SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance, bool with_gap = true) const;
