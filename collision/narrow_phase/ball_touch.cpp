@@ -123,10 +123,12 @@ void BallTouch<Degree>::add_edge(std::size_t i) {
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
   piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
-  if (const auto far = beyond(triangle_, i)) {
-    const Side side = before(triangle_.vertices[i], along, *far, radius_);
+  const auto add_before = [&](const Vector3d& far) {
+    const Side side = before(triangle_.vertices[i], along, far, radius_);
     piece.conditions.push_back(below(side.out, side.distance));
-  }
+  };
+  add_before(triangle_.vertices[(i + 2) % 3]);
+  if (const auto far = beyond(triangle_, i)) add_before(*far);
   // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   piece.conditions.push_back(within(path));

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -66,11 +67,14 @@ CapsuleTouch<Degree>::CapsuleTouch(const PlacedTriangle& triangle, const PlacedC
     const std::size_t next = (i + 1) % 3;
     const auto far = beyond(triangle_, i);
     add_parallelogram(i);
-    if (!flat_corner(triangle_, i)) add_line(corner(i, -1), corner(i, 1));
+    std::vector<Vector3d> around;
+    if (!flat_corner(triangle_, i)) each_around(triangle_, i, [&](const Vector3d& each) { around.push_back(each); });
+    if (!flat_corner(triangle_, i)) add_line(corner(i, -1), corner(i, 1), around, -1);
     for (const double end : {-1.0, 1.0}) {
-      const auto far_end = far ? std::optional(Vector3d(*far + end * half_)) : std::nullopt;
-      if (!flat_edge(triangle_, i)) add_line(corner(i, end), corner(next, end), far_end);
-      if (!flat_corner(triangle_, i)) add_point(corner(i, end));
+      std::vector<Vector3d> beside{triangle_.vertices[(i + 2) % 3]};
+      if (far) beside.push_back(*far);
+      if (!flat_edge(triangle_, i)) add_line(corner(i, end), corner(next, end), beside, end);
+      if (!flat_corner(triangle_, i)) add_point(corner(i, end), around, end);
     }
   }
 }
@@ -180,14 +184,17 @@ void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
   add(piece);
 }
 
+/// A cylinder about a line, only where no triangle is nearer that has a corner `beside` it, moved to an end of the
+/// segment.
 template <int Degree>
-void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end, const std::optional<Vector3d>& far) {
-  const Vector3d along = unit_or_zero(end - begin);
+void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& to, Corners beside, double end) {
+  const Vector3d along = unit_or_zero(to - begin);
   Piece piece;
-  piece.conditions.push_back(below(along, dot(along, end)));
+  piece.conditions.push_back(below(along, dot(along, to)));
   piece.conditions.push_back(below(-along, -dot(along, begin)));
-  if (far) {
-    const Side side = before(begin, along, *far, radius_);
+  for (const Vector3d& each : beside) {
+    if (piece.conditions.size() + 1 == most_conditions) break;  // One fewer leaves the piece larger.
+    const Side side = before(begin, along, each + end * half_, radius_);
     piece.conditions.push_back(below(side.out, side.distance));
   }
   // The expensive condition last, and only if the others hold.
@@ -199,11 +206,18 @@ void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end, 
   add(piece);
 }
 
+/// A ball about a corner, only where no edge is nearer that leads to a vertex `around` it.
 template <int Degree>
-void CapsuleTouch<Degree>::add_point(const Vector3d& at) {
+void CapsuleTouch<Degree>::add_point(const Vector3d& at, Corners around, double end) {
   const Path path = from(at);
   if (!matters(path)) return;
   Piece piece;
+  for (const Vector3d& each : around) {
+    if (piece.conditions.size() + 1 == most_conditions) break;
+    const Vector3d along = unit_or_zero(Vector3d(each + end * half_ - at));
+    piece.conditions.push_back(below(along, dot(along, at)));
+  }
+  if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   piece.conditions.push_back(within(path));
   add(piece);
 }

@@ -164,8 +164,8 @@ class ConvexTouch {
   }
 
   /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
-  /// separation that is the greatest of all along which they can meet has its maximum, or `end`. At other times the greatest separation goes on
-  /// rising.
+  /// separation that is the greatest of all along which they can meet has its maximum, or `end`. At other times the
+  /// greatest separation goes on rising.
   double turning(double tau, double end) const {
     if constexpr (Degree >= 3) {
       const Conditions conditions(*this);
@@ -275,9 +275,8 @@ class ConvexTouch {
       }
       if (!top[i] || top[next] || top[last]) continue;
       bool outermost = true;
-      each_around(triangle, i, [&](const Eigen::Vector3d& other) {
-        outermost = outermost && dot(out, other) <= high + gap;
-      });
+      each_around(triangle, i,
+                  [&](const Eigen::Vector3d& other) { outermost = outermost && dot(out, other) <= high + gap; });
       return outermost;
     }
     return true;

@@ -20,9 +20,8 @@ std::vector<std::uint32_t> lowest_at_same_place(std::span<const Vector3d> vertic
     const Vector3d& v = vertices[i];
     return std::tuple(v[0], v[1], v[2]);
   };
-  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
-    return key(i) != key(j) ? key(i) < key(j) : i < j;
-  });
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t i, std::uint32_t j) { return key(i) != key(j) ? key(i) < key(j) : i < j; });
   std::vector<std::uint32_t> lowest(vertices.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const bool same = k > 0 && vertices[order[k]] == vertices[order[k - 1]];
