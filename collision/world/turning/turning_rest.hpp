@@ -3,6 +3,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/static_balance.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/world/bodies.hpp"
@@ -125,7 +126,7 @@ class TurningRest {
   /// Whether a body rests, and so has not the motion that callers gave.
   bool carries(BodySlot slot) const { return slot < of_.size() && of_[slot].rests; }
   bool keeps_apart(Slot) const { return true; }
-  double next_contact(BodySlot, BodySlot) const { return never; }
+  ContactEstimate next_contact(BodySlot, BodySlot, double) const { return {never, true}; }
 
   /// Two bodies have met, and move as they do after their impulses. Returns whether they, and all bodies of their
   /// group, have come to rest.
