@@ -123,10 +123,12 @@ class ConvexTouch {
     const Eigen::Vector3d offset = motion_.position(tau);
     const double gap = gap_(tau);
     const double rounding = gap / tie;
-    // As many directions are left out as have to be: few are asked about.
+    // As many directions are left out as have to be: few are asked about. None is where they overlap along all.
     std::array<bool, capacity> left_out{};
     double most = -TimeSpans::infinity;
-    for (bool found = false; !found;) {
+    for (const Condition& each : conditions) most = std::max(most, each(tau));
+    bool all = !(most > -gap);
+    for (bool found = all; !found;) {
       most = -TimeSpans::infinity;
       std::size_t at = capacity;
       for (std::size_t i = 0; i < conditions.size(); ++i) {
@@ -136,10 +138,10 @@ class ConvexTouch {
       }
       found = at == capacity || meets_along(conditions[at].normal, gap);
       if (!found) left_out[at] = true;
-      if (at == capacity) left_out.fill(false);  // surfaces that cross each other
+      all = at == capacity;
     }
-    const bool all = most == -TimeSpans::infinity;
     if (all) {
+      left_out.fill(false);
       for (const Condition& each : conditions) most = std::max(most, each(tau));
     }
     TouchDirection chosen{Eigen::Vector3d::Zero(), -TimeSpans::infinity, false};
