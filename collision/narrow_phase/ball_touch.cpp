@@ -127,7 +127,7 @@ void BallTouch<Degree>::add_edge(std::size_t i) {
     const Side side = before(triangle_.vertices[i], along, far, radius_);
     piece.conditions.push_back(below(side.out, side.distance));
   };
-  add_before(triangle_.vertices[(i + 2) % 3]);
+  if (triangle_.surface) add_before(triangle_.vertices[(i + 2) % 3]);
   if (const auto far = beyond(triangle_, i)) add_before(*far);
   // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
@@ -162,7 +162,8 @@ NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) c
   constexpr double widest = 9;       // in gaps: the corners of the prism
   constexpr double least = 0x1p-20;  // a ball that is so small that this matters meets edges as they are
   const double height = dot(face, apart);
-  if (norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
+  const bool shallow = std::abs(height) > radius_ - gap;
+  if (shallow && norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
     return {height * face, 2, face};
   }
   return {apart, nearest.dimension,

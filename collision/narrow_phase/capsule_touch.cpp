@@ -71,7 +71,8 @@ CapsuleTouch<Degree>::CapsuleTouch(const PlacedTriangle& triangle, const PlacedC
     if (!flat_corner(triangle_, i)) each_around(triangle_, i, [&](const Vector3d& each) { around.push_back(each); });
     if (!flat_corner(triangle_, i)) add_line(corner(i, -1), corner(i, 1), around, -1);
     for (const double end : {-1.0, 1.0}) {
-      std::vector<Vector3d> beside{triangle_.vertices[(i + 2) % 3]};
+      std::vector<Vector3d> beside;
+      if (triangle_.surface) beside.push_back(triangle_.vertices[(i + 2) % 3]);
       if (far) beside.push_back(*far);
       if (!flat_edge(triangle_, i)) add_line(corner(i, end), corner(next, end), beside, end);
       if (!flat_corner(triangle_, i)) add_point(corner(i, end), around, end);
