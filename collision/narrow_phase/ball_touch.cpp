@@ -151,8 +151,8 @@ void BallTouch<Degree>::add_vertex(std::size_t i) {
   pieces_.add(piece);
 }
 
-/// The part that a place is nearest to. Over the prism of the face that is the face, though the prism may be wider than
-/// the triangle, by some gaps: so a ball that slides from a face to the next goes on along their plane.
+/// The part that a place is nearest to. If a gap is given, that is the face over all of its prism, which is wider than
+/// the triangle by some gaps: so a ball that slides from a face to the next goes on along their plane.
 template <int Degree>
 NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) const {
   const NearestPoint nearest = nearest_point(triangle_, place);
@@ -163,7 +163,7 @@ NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) c
   constexpr double least = 0x1p-20;  // a ball that is so small that this matters meets edges as they are
   const double height = dot(face, apart);
   const bool shallow = std::abs(height) > radius_ - gap;
-  if (shallow && norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
+  if (gap > 0 && shallow && norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
     return {height * face, 2, face};
   }
   return {apart, nearest.dimension,
@@ -176,6 +176,7 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const Vector3d velocity = motion_.velocity(tau);
   const double gap = gap_(tau);
   const NearestPart nearest = nearest_part(centre, gap);
+  const bool inside = nearest_part(centre, 0).dimension == 2;
   const Vector3d& apart = nearest.apart;
   const auto speeds = smallest_speeds(motion_);
   if (!(apart.cwiseAbs().maxCoeff() > 0)) {
@@ -190,17 +191,15 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const double tilt = nearest.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
   bool approaching = rate < 0;
   if constexpr (Degree >= 3) {
-    approaching =
-        curve_approaches(motion_, gap, tau, tilt, [&](const Vector3d& place) { return nearest_part(place, gap); });
+    approaching = curve_approaches(motion_, gap, tau, tilt, nearest, inside,
+                                   [&](const Vector3d& place) { return nearest_part(place, 0); });
   } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
     // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature. The
     // curvature is that of the part of the triangle that the ball comes to: it may be about to pass from an edge to the
     // face.
     Vector3d sideways = velocity - rate * normal;
     NearestPart ahead = nearest;
-    if (nearest.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = nearest_part(centre + gap * unit(sideways), gap);
-    }
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit(sideways), 0);
     if (ahead.dimension == 1) sideways -= dot(ahead.direction, sideways) * ahead.direction;
     const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
     const Vector3d acceleration = motion_.acceleration();

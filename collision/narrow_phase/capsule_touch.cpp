@@ -242,19 +242,17 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     look(normal), look(-normal);
   }
   const double gap = gap_(tau);
-  // Over the slab of the triangle at an end the face is the nearest, though the slab may be wider by some gaps.
-  const auto way_from = [&](const Vector3d& place) {
-    SegmentWay to = shortest_way(triangle_, place, half_);
-    constexpr double widest = 9;
-    constexpr double least = 0x1p-20;
-    const double height = dot(face, to.apart);
-    if (to.dimension != 2 && norm(across(to.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
-      to.apart = height * face;
-      to.dimension = 2;
-    }
-    return to;
-  };
-  const SegmentWay way = way_from(centre);
+  SegmentWay way = shortest_way(triangle_, centre, half_);
+  const bool inside = way.dimension == 2;
+  // Over the slab of the triangle at an end the face is the nearest, though the slab is wider by some gaps.
+  constexpr double widest = 9;
+  constexpr double least = 0x1p-20;
+  const double height = dot(face, way.apart);
+  const bool shallow = std::abs(height) > radius_ - gap;
+  if (shallow && norm(across(way.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
+    way.apart = height * face;
+    way.dimension = 2;
+  }
   const bool through = deepest.separation < 0;
   if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
     return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
@@ -266,20 +264,22 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   const double tilt = way.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
   bool approaching = rate < 0;
   if constexpr (Degree >= 3) {
-    approaching = curve_approaches(motion_, gap, tau, tilt, [&](const Vector3d& place) -> NearestPart {
-      const SegmentWay to = way_from(place);
+    const auto part_of = [](const SegmentWay& to) -> NearestPart {
       const Vector3d direction = to.dimension == 2   ? unit_or_zero(to.apart)
                                  : to.dimension == 1 ? unit_or_zero(to.along)
                                                      : Vector3d(Vector3d::Zero());
       return {to.apart, to.dimension, direction};
+    };
+    approaching = curve_approaches(motion_, gap, tau, tilt, part_of(way), inside, [&](const Vector3d& place) {
+      return part_of(shortest_way(triangle_, place, half_));
     });
   } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
     // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature, which
     // is that of the part that the capsule comes to.
     Vector3d sideways = across(velocity, normal);
     SegmentWay ahead = way;
-    if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = way_from(centre + gap * unit_or_zero(sideways));
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) {
+      ahead = shortest_way(triangle_, centre + gap * unit_or_zero(sideways), half_);
     }
     if (ahead.dimension == 1) sideways = across(sideways, unit_or_zero(ahead.along));
     const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;

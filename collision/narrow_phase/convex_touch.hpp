@@ -150,7 +150,7 @@ class ConvexTouch {
       const Condition& each = conditions[i];
       const double separation = each(tau);
       if (left_out[i] || separation < most - rounding) continue;
-      if (!all && separation < most && !meets_along(each.normal, gap)) continue;
+      if (!all && !meets_along(each.normal, gap)) continue;
       if (opposite_of(conditions, each)(tau) >= most - rounding && dot(each.normal, offset) < 0) continue;
       const int trend = each.trend(tau, separation > -gap ? tilted : speeds);
       // Rising before falling before neither; then the greatest.
