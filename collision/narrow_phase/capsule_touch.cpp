@@ -249,7 +249,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   constexpr double least = 0x1p-20;
   const double height = dot(face, way.apart);
   const bool shallow = std::abs(height) > radius_ - gap;
-  if (shallow && norm(across(way.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
+  if (!inside && shallow && norm(across(way.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
     way.apart = height * face;
     way.dimension = 2;
   }
