@@ -124,7 +124,7 @@ void BallTouch<Degree>::add_edge(std::size_t i) {
   piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
   piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
   const auto add_before = [&](const Vector3d& far) {
-    const Side side = before(triangle_.vertices[i], along, far, radius_);
+    const PlaneSide side = nearer_to_edge(triangle_.vertices[i], along, far, radius_);
     piece.conditions.push_back(below(side.out, side.distance));
   };
   if (triangle_.surface) add_before(triangle_.vertices[(i + 2) % 3]);

@@ -195,7 +195,7 @@ void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& to, C
   piece.conditions.push_back(below(-along, -dot(along, begin)));
   for (const Vector3d& each : beside) {
     if (piece.conditions.size() + 1 == most_conditions) break;  // One fewer leaves the piece larger.
-    const Side side = before(begin, along, each + end * half_, radius_);
+    const PlaneSide side = nearer_to_edge(begin, along, each + end * half_, radius_);
     piece.conditions.push_back(below(side.out, side.distance));
   }
   // The expensive condition last, and only if the others hold.

@@ -263,26 +263,6 @@ class ConvexTouch {
     }
     return is_outermost(a_, normal, gap);
   }
-  static bool is_outermost(const PlacedTriangle& triangle, const Eigen::Vector3d& out, double gap) {
-    if (!triangle.surface) return true;
-    const double high = triangle.project(out).high;
-    std::array<bool, 3> top;
-    for (std::size_t i = 0; i < 3; ++i) top[i] = dot(out, triangle.vertices[i]) >= high - gap;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::size_t next = (i + 1) % 3, last = (i + 2) % 3;
-      if (top[i] && top[next] && top[last]) return true;
-      if (top[i] && top[next]) {
-        const auto corner = beyond(triangle, i);
-        return !corner || (!flat_edge(triangle, i) && dot(out, *corner) <= high + gap);
-      }
-      if (!top[i] || top[next] || top[last]) continue;
-      bool outermost = true;
-      each_around(triangle, i,
-                  [&](const Eigen::Vector3d& other) { outermost = outermost && dot(out, other) <= high + gap; });
-      return outermost;
-    }
-    return true;
-  }
 
   /// Calls visit(condition) for both sides of every axis.
   template <class Visit>

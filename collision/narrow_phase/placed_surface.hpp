@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -51,15 +52,15 @@ inline std::optional<Eigen::Vector3d> beyond(const PlacedTriangle& triangle, std
 }
 
 /// The places r with out . r < distance.
-struct Side {
+struct PlaneSide {
   Eigen::Vector3d out;  ///< unit
   double distance;
 };
 /// The places from which an edge is nearer than a triangle beyond it with the corner `far`, as long as they are no
 /// farther than a radius from the edge: up to 64 roundings of the direction across it, which is known the less the
 /// nearer the corner is to the line of the edge. `along`: unit.
-inline Side before(const Eigen::Vector3d& begin, const Eigen::Vector3d& along, const Eigen::Vector3d& far,
-                   double radius) {
+inline PlaneSide nearer_to_edge(const Eigen::Vector3d& begin, const Eigen::Vector3d& along, const Eigen::Vector3d& far,
+                                double radius) {
   const Eigen::Vector3d way = far - begin;
   const Eigen::Vector3d across = way - dot(way, along) * along;
   const double square = dot(across, across);
@@ -78,6 +79,29 @@ void each_around(const PlacedTriangle& triangle, std::size_t corner, const Visit
   for (const std::uint32_t i : surface.neighbours.around(surface.mesh.triangles()[triangle.index][corner])) {
     visit(surface.vertex(i));
   }
+}
+
+/// Whether nothing beside a triangle comes out farther along a direction than its outermost edge or corner, up to a
+/// gap; a face is met whatever is beside it.
+inline bool is_outermost(const PlacedTriangle& triangle, const Eigen::Vector3d& out, double gap) {
+  if (!triangle.surface) return true;
+  const double high = triangle.project(out).high;
+  std::array<bool, 3> top;
+  for (std::size_t i = 0; i < 3; ++i) top[i] = dot(out, triangle.vertices[i]) >= high - gap;
+  if (top[0] && top[1] && top[2]) return true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3, last = (i + 2) % 3;
+    if (!top[i] || top[last]) continue;
+    if (top[next]) {
+      const auto far = beyond(triangle, i);
+      return !far || (!flat_edge(triangle, i) && dot(out, *far) <= high + gap);
+    }
+    bool outermost = true;
+    each_around(triangle, i,
+                [&](const Eigen::Vector3d& other) { outermost = outermost && dot(out, other) <= high + gap; });
+    return outermost;
+  }
+  return true;
 }
 
 /// The sine of the angle by which the plane of a triangle may be off: its corners are rounded by 18 x 2^-53 of their

@@ -31,16 +31,17 @@ std::vector<std::uint32_t> lowest_at_same_place(std::span<const Vector3d> vertic
 }
 
 /// The edge of a triangle, by the places of its ends.
-struct Side {
+struct TriangleEdge {
   std::uint32_t low, high;
   std::uint32_t triangle;
   std::uint32_t edge;
 
-  bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
+  bool same_edge(const TriangleEdge& other) const { return low == other.low && high == other.high; }
 };
 
-std::vector<Side> sides_of(std::span<const Triangle> triangles, std::span<const std::uint32_t> place_of) {
-  std::vector<Side> sides;
+std::vector<TriangleEdge> edges_of_triangles(std::span<const Triangle> triangles,
+                                             std::span<const std::uint32_t> place_of) {
+  std::vector<TriangleEdge> sides;
   sides.reserve(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t) {
     for (std::uint32_t i = 0; i < 3; ++i) {
@@ -48,7 +49,7 @@ std::vector<Side> sides_of(std::span<const Triangle> triangles, std::span<const 
       sides.push_back({low, high, t, i});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  std::sort(sides.begin(), sides.end(), [](const TriangleEdge& x, const TriangleEdge& y) {
     return std::tie(x.low, x.high, x.triangle, x.edge) < std::tie(y.low, y.high, y.triangle, y.edge);
   });
   return sides;
@@ -77,8 +78,8 @@ MeshNeighbours::MeshNeighbours(std::span<const Vector3d> vertices, std::span<con
       flat_(triangles.size()),
       place_of_(lowest_at_same_place(vertices)),
       first_(vertices.size() + 1) {
-  const std::vector<Side> sides = sides_of(triangles, place_of_);
-  const auto opposite = [&](const Side& side) { return triangles[side.triangle][(side.edge + 2) % 3]; };
+  const std::vector<TriangleEdge> sides = edges_of_triangles(triangles, place_of_);
+  const auto opposite = [&](const TriangleEdge& side) { return triangles[side.triangle][(side.edge + 2) % 3]; };
   std::vector<char> flat_all_round(vertices.size(), 1);
   std::vector<std::array<std::uint32_t, 2>> joined;  // from and to
   for (std::size_t first = 0, next = 0; first < sides.size(); first = next) {
@@ -87,7 +88,7 @@ MeshNeighbours::MeshNeighbours(std::span<const Vector3d> vertices, std::span<con
     joined.push_back({low, high}), joined.push_back({high, low});
     const Vector3d &begin = vertices[low], &end = vertices[high];
     for (std::size_t k = first; k < next; ++k) {
-      const Side& side = sides[k];
+      const TriangleEdge& side = sides[k];
       const Vector3d own = across_edge(begin, end, vertices[opposite(side)]);
       double least = 1;
       bool flat = false;

@@ -322,8 +322,7 @@ bool Pairs<Motion>::certify() {
   }
   FoundTouch found;
   const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
-  // Exact tests of bodies that turn look only a few turns ahead, and those of bodies that rest on a mesh some sizes:
-  // each goes on where the last one has ended.
+  // Some tests look only a few turns or sizes ahead: each goes on where the last one has ended.
   const bool rests = !pair.overlapping && resting_.find(pair.a, pair.b) != Resting::none;
   const double from = turns<Motion> || rests ? contacts_.time(slot) : clock_.now;
   const ContactEstimate next =
