@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/ball_touch.hpp"
 
 #include "collision/degrees.hpp"
+#include "collision/narrow_phase/placed_surface.hpp"
 #include "collision/narrow_phase/round_touch.hpp"
 #include "collision/vectors.hpp"
 
@@ -45,8 +46,12 @@ BallTouch<Degree> BallTouch<Degree>::until_met(const PlacedTriangle& triangle, c
 /// The edges and vertices.
 template <int Degree>
 void BallTouch<Degree>::add_rim() {
-  for (std::size_t i = 0; i < 3; ++i) add_edge(i);
-  for (std::size_t i = 0; i < 3; ++i) add_vertex(i);
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!flat_edge(triangle_, i)) add_edge(i);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (!flat_corner(triangle_, i)) add_vertex(i);
+  }
 }
 
 template <int Degree>
@@ -118,6 +123,12 @@ void BallTouch<Degree>::add_edge(std::size_t i) {
   Piece piece;
   piece.conditions.push_back(below(along, dot(along, triangle_.vertices[(i + 1) % 3])));
   piece.conditions.push_back(below(-along, -dot(along, triangle_.vertices[i])));
+  const auto add_before = [&](const Vector3d& far) {
+    const PlaneSide side = nearer_to_edge(triangle_.vertices[i], along, far, radius_);
+    piece.conditions.push_back(below(side.out, side.distance));
+  };
+  if (triangle_.surface) add_before(triangle_.vertices[(i + 2) % 3]);
+  if (const auto far = beyond(triangle_, i)) add_before(*far);
   // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   piece.conditions.push_back(within(path));
@@ -129,16 +140,44 @@ void BallTouch<Degree>::add_vertex(std::size_t i) {
   const Path path = from(i);
   if (!matters(path)) return;
   Piece piece;
+  const Vector3d& at = triangle_.vertices[i];
+  each_around(triangle_, i, [&](const Vector3d& other) {
+    if (piece.conditions.size() + 1 == most_conditions) return;  // One fewer leaves the piece larger.
+    const Vector3d along = unit(Vector3d(other - at));
+    piece.conditions.push_back(below(along, dot(along, at)));
+  });
+  if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   piece.conditions.push_back(within(path));
   pieces_.add(piece);
+}
+
+/// The part that a place is nearest to. If a gap is given, that is the face over all of its prism, which is wider than
+/// the triangle by some gaps: so a ball that slides from a face to the next goes on along their plane.
+template <int Degree>
+NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) const {
+  const NearestPoint nearest = nearest_point(triangle_, place);
+  const Vector3d face = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+  const Vector3d apart = place - nearest.point;
+  if (nearest.dimension == 2) return {apart, 2, face};
+  constexpr double widest = 9;       // in gaps: the corners of the prism
+  constexpr double least = 0x1p-20;  // a ball that is so small that this matters meets edges as they are
+  const double height = dot(face, apart);
+  const bool shallow = std::abs(height) > radius_ - gap;
+  if (gap > 0 && shallow && norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
+    return {height * face, 2, face};
+  }
+  return {apart, nearest.dimension,
+          nearest.dimension == 1 ? unit(triangle_.edge(nearest.index)) : Vector3d(Vector3d::Zero())};
 }
 
 template <int Degree>
 TouchDirection BallTouch<Degree>::direction(double tau) const {
   const Vector3d centre = motion_.position(tau);
   const Vector3d velocity = motion_.velocity(tau);
-  const NearestPoint nearest = nearest_point(triangle_, centre);
-  const Vector3d apart = centre - nearest.point;
+  const double gap = gap_(tau);
+  const NearestPart nearest = nearest_part(centre, gap);
+  const bool inside = nearest_part(centre, 0).dimension == 2;
+  const Vector3d& apart = nearest.apart;
   const auto speeds = smallest_speeds(motion_);
   if (!(apart.cwiseAbs().maxCoeff() > 0)) {
     // The centre passes through the surface: from now on it moves away.
@@ -148,30 +187,23 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const Vector3d normal = unit(apart);
   const double distance = std::sqrt(dot(apart, apart));
   const double rate = dot(normal, velocity);
+  // A ball that has sunk in by a gap approaches however slowly it does.
+  const double tilt = nearest.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
   bool approaching = rate < 0;
   if constexpr (Degree >= 3) {
-    approaching = curve_approaches(motion_, gap_, tau, [&](const Vector3d& place) -> NearestPart {
-      const NearestPoint at = nearest_point(triangle_, place);
-      const Vector3d direction = at.dimension == 2   ? unit(cross(triangle_.edge(0), triangle_.edge(1)))
-                                 : at.dimension == 1 ? unit(triangle_.edge(at.index))
-                                                     : Vector3d(Vector3d::Zero());
-      return {place - at.point, at.dimension, direction};
-    });
-  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+    approaching = curve_approaches(motion_, gap, tau, tilt, nearest, inside,
+                                   [&](const Vector3d& place) { return nearest_part(place, 0); });
+  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
     // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature. The
     // curvature is that of the part of the triangle that the ball comes to: it may be about to pass from an edge to the
     // face.
     Vector3d sideways = velocity - rate * normal;
-    NearestPoint ahead = nearest;
-    if (nearest.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = nearest_point(triangle_, centre + gap_(tau) * unit(sideways));
-    }
-    if (ahead.dimension == 1) {
-      const Vector3d along = unit(triangle_.edge(ahead.index));
-      sideways -= dot(along, sideways) * along;
-    }
+    NearestPart ahead = nearest;
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit(sideways), 0);
+    if (ahead.dimension == 1) sideways -= dot(ahead.direction, sideways) * ahead.direction;
     const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
-    approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
+    const Vector3d acceleration = motion_.acceleration();
+    approaching = dot(normal, acceleration) + round < -speeds[1] - tilt * norm(acceleration);
   }
   return {normal, distance - radius_, approaching};
 }

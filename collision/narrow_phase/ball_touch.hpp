@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/near_spans.hpp"
 #include "collision/narrow_phase/nearest_point.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/round_touch.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 #include "collision/narrow_phase/touch_pieces.hpp"
@@ -58,8 +59,9 @@ class BallTouch {
   BallTouch(const PlacedTriangle& triangle, const PlacedBall& ball, const RelativeMotion<Degree>& motion,
             const ContactGap<Degree>& gap, double horizon, const TimeWindow& interest);
 
-  /// A slab or a cylinder with its ends has eight conditions at most.
-  using Pieces = TouchPieces<Degree, 7, 8>;
+  /// A slab has eight conditions at most, a ball about a vertex one, and one for each edge that ends there.
+  static constexpr std::size_t most_conditions = 16;
+  using Pieces = TouchPieces<Degree, 7, most_conditions>;
   using Piece = typename Pieces::Piece;
 
   void add_face(bool sharp);
@@ -69,6 +71,7 @@ class BallTouch {
   SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance) const;
   bool matters(const Path& path) const;
   SpansOf<Degree> within(const Path& path) const;
+  NearestPart nearest_part(const Eigen::Vector3d& place, double gap) const;
   Path from(std::size_t vertex) const;
   Path across_edge(std::size_t i) const;
 

@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/capsule_touch.hpp"
 
 #include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/placed_surface.hpp"
 #include "collision/narrow_phase/round_touch.hpp"
 #include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/zonotope_cells.hpp"
@@ -8,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace kds::collision {
 namespace {
@@ -21,6 +23,9 @@ Vector3d unit_or_zero(const Vector3d& v) {
   const Vector3d scaled = v / largest;
   return scaled / std::sqrt(dot(scaled, scaled));
 }
+
+/// How deep within the prism of a triangle and a segment what is nearer to its faces ends, in radii.
+constexpr double inset = 0.5;
 
 /// The part of v across a unit vector.
 Vector3d across(const Vector3d& v, const Vector3d& along) { return v - dot(along, v) * along; }
@@ -60,11 +65,17 @@ CapsuleTouch<Degree>::CapsuleTouch(const PlacedTriangle& triangle, const PlacedC
   for (const double end : {-1.0, 1.0}) add_triangle(end, sharp);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
+    const auto far = beyond(triangle_, i);
     add_parallelogram(i);
-    add_line(corner(i, -1), corner(i, 1));
+    std::vector<Vector3d> around;
+    if (!flat_corner(triangle_, i)) each_around(triangle_, i, [&](const Vector3d& each) { around.push_back(each); });
+    if (!flat_corner(triangle_, i)) add_line(corner(i, -1), corner(i, 1), around, -1);
     for (const double end : {-1.0, 1.0}) {
-      add_line(corner(i, end), corner(next, end));
-      add_point(corner(i, end));
+      std::vector<Vector3d> beside;
+      if (triangle_.surface) beside.push_back(triangle_.vertices[(i + 2) % 3]);
+      if (far) beside.push_back(*far);
+      if (!flat_edge(triangle_, i)) add_line(corner(i, end), corner(next, end), beside, end);
+      if (!flat_corner(triangle_, i)) add_point(corner(i, end), around, end);
     }
   }
 }
@@ -119,15 +130,15 @@ void CapsuleTouch<Degree>::add_inside() {
   const double thickness = std::abs(dot(normal, half_));
   if (!(thickness > radius_)) return;
   Piece piece;
-  const double inset = 0.5 * radius_;
+  const double depth = inset * radius_;
   const double height = dot(normal, triangle_.vertices[0]);
-  piece.conditions.push_back(below(normal, height + thickness - inset, false));
-  piece.conditions.push_back(below(-normal, -height + thickness - inset, false));
+  piece.conditions.push_back(below(normal, height + thickness - depth, false));
+  piece.conditions.push_back(below(-normal, -height + thickness - depth, false));
   for (std::size_t i = 0; i < 3; ++i) {
     Vector3d out = frame_of(triangle_.edge(i), half_).normal;
     const Vector3d& third = triangle_.vertices[(i + 2) % 3];
     if (dot(out, third - triangle_.vertices[i]) > 0) out = -out;
-    piece.conditions.push_back(below(out, dot(out, triangle_.vertices[i]) - inset, false));
+    piece.conditions.push_back(below(out, dot(out, triangle_.vertices[i]) - depth, false));
   }
   add(piece);
 }
@@ -158,8 +169,12 @@ void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
   const Vector3d e = triangle_.edge(edge);
   const Frame frame = frame_of(e, half_);
   Piece piece;
-  bound(piece, frame.normal, corners, radius_);
-  bound(piece, -frame.normal, corners, radius_);
+  // On a side on which the surface goes on, and comes out farther, the parallelogram is met from within alone.
+  const auto far = beyond(triangle_, edge);
+  const double high = far ? dot(frame.normal, Vector3d(*far - triangle_.vertices[edge])) : 0.0;
+  const bool flat = flat_edge(triangle_, edge);
+  bound(piece, frame.normal, corners, flat || high > gap_.c[0] ? inset * radius_ : radius_);
+  bound(piece, -frame.normal, corners, flat || -high > gap_.c[0] ? inset * radius_ : radius_);
   // Across the longer sides, the shorter ones, and the corners.
   const Vector3d shorter = unit_or_zero(across(dot(e, e) > dot(half_, half_) ? half_ : e, frame.normal));
   for (const Vector3d& out : {frame.beside, unit_or_zero(cross(frame.normal, shorter)),
@@ -170,12 +185,19 @@ void CapsuleTouch<Degree>::add_parallelogram(std::size_t edge) {
   add(piece);
 }
 
+/// A cylinder about a line, only where no triangle is nearer that has a corner `beside` it, moved to an end of the
+/// segment.
 template <int Degree>
-void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end) {
-  const Vector3d along = unit_or_zero(end - begin);
+void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& to, Corners beside, double end) {
+  const Vector3d along = unit_or_zero(to - begin);
   Piece piece;
-  piece.conditions.push_back(below(along, dot(along, end)));
+  piece.conditions.push_back(below(along, dot(along, to)));
   piece.conditions.push_back(below(-along, -dot(along, begin)));
+  for (const Vector3d& each : beside) {
+    if (piece.conditions.size() + 1 == most_conditions) break;  // One fewer leaves the piece larger.
+    const PlaneSide side = nearer_to_edge(begin, along, each + end * half_, radius_);
+    piece.conditions.push_back(below(side.out, side.distance));
+  }
   // The expensive condition last, and only if the others hold.
   if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   Path path = from(begin);
@@ -185,11 +207,18 @@ void CapsuleTouch<Degree>::add_line(const Vector3d& begin, const Vector3d& end) 
   add(piece);
 }
 
+/// A ball about a corner, only where no edge is nearer that leads to a vertex `around` it.
 template <int Degree>
-void CapsuleTouch<Degree>::add_point(const Vector3d& at) {
+void CapsuleTouch<Degree>::add_point(const Vector3d& at, Corners around, double end) {
   const Path path = from(at);
   if (!matters(path)) return;
   Piece piece;
+  for (const Vector3d& each : around) {
+    if (piece.conditions.size() + 1 == most_conditions) break;
+    const Vector3d along = unit_or_zero(Vector3d(each + end * half_ - at));
+    piece.conditions.push_back(below(along, dot(along, at)));
+  }
+  if (!(first_inside_all(piece.spans(), interest_.begin) <= interest_.end)) return;
   piece.conditions.push_back(within(path));
   add(piece);
 }
@@ -212,7 +241,18 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     const Vector3d normal = frame_of(triangle_.edge(i), half_).normal;
     look(normal), look(-normal);
   }
-  const SegmentWay way = shortest_way(triangle_, centre, half_);
+  const double gap = gap_(tau);
+  SegmentWay way = shortest_way(triangle_, centre, half_);
+  const bool inside = way.dimension == 2;
+  // Over the slab of the triangle at an end the face is the nearest, though the slab is wider by some gaps.
+  constexpr double widest = 9;
+  constexpr double least = 0x1p-20;
+  const double height = dot(face, way.apart);
+  const bool shallow = std::abs(height) > radius_ - gap;
+  if (!inside && shallow && norm(across(way.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
+    way.apart = height * face;
+    way.dimension = 2;
+  }
   const bool through = deepest.separation < 0;
   if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
     return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
@@ -220,26 +260,31 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   const Vector3d normal = unit_or_zero(way.apart);
   const double distance = std::sqrt(dot(way.apart, way.apart));
   const double rate = dot(normal, velocity);
+  // One that has sunk in by a gap approaches however slowly it does.
+  const double tilt = way.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
   bool approaching = rate < 0;
   if constexpr (Degree >= 3) {
-    approaching = curve_approaches(motion_, gap_, tau, [&](const Vector3d& place) -> NearestPart {
-      const SegmentWay to = shortest_way(triangle_, place, half_);
+    const auto part_of = [](const SegmentWay& to) -> NearestPart {
       const Vector3d direction = to.dimension == 2   ? unit_or_zero(to.apart)
                                  : to.dimension == 1 ? unit_or_zero(to.along)
                                                      : Vector3d(Vector3d::Zero());
       return {to.apart, to.dimension, direction};
+    };
+    approaching = curve_approaches(motion_, gap, tau, tilt, part_of(way), inside, [&](const Vector3d& place) {
+      return part_of(shortest_way(triangle_, place, half_));
     });
-  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1]) {
+  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
     // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature, which
     // is that of the part that the capsule comes to.
     Vector3d sideways = across(velocity, normal);
     SegmentWay ahead = way;
-    if (way.dimension != 2 && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = shortest_way(triangle_, centre + gap_(tau) * unit_or_zero(sideways), half_);
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) {
+      ahead = shortest_way(triangle_, centre + gap * unit_or_zero(sideways), half_);
     }
     if (ahead.dimension == 1) sideways = across(sideways, unit_or_zero(ahead.along));
     const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
-    approaching = dot(normal, motion_.acceleration()) + round < -speeds[1];
+    const Vector3d acceleration = motion_.acceleration();
+    approaching = dot(normal, acceleration) + round < -speeds[1] - tilt * norm(acceleration);
   }
   return {normal, distance - radius_, approaching};
 }

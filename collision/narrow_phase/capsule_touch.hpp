@@ -54,8 +54,10 @@ class CapsuleTouch {
  private:
   using Corners = std::span<const Eigen::Vector3d>;
 
-  /// A parallelogram's slab has both sides of five directions.
-  using Pieces = TouchPieces<Degree, 21, 10>;
+  /// A parallelogram's slab has both sides of five directions, a ball about a corner one condition, and one for each
+  /// edge that ends there.
+  static constexpr std::size_t most_conditions = 16;
+  using Pieces = TouchPieces<Degree, 21, most_conditions>;
   using Piece = typename Pieces::Piece;
 
   Eigen::Vector3d corner(std::size_t i, double end) const { return triangle_.vertices[i] + end * half_; }
@@ -63,8 +65,8 @@ class CapsuleTouch {
   void add_inside();
   void add_triangle(double end, bool sharp);
   void add_parallelogram(std::size_t edge);
-  void add_line(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
-  void add_point(const Eigen::Vector3d& at);
+  void add_line(const Eigen::Vector3d& begin, const Eigen::Vector3d& to, Corners beside, double end);
+  void add_point(const Eigen::Vector3d& at, Corners around, double end);
   void add(const Piece& piece);
   SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance, bool with_gap = true) const;
   void bound(Piece& piece, const Eigen::Vector3d& out, Corners corners, double more = 0) const;

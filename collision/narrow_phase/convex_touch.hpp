@@ -3,6 +3,7 @@
 
 #include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
+#include "collision/narrow_phase/placed_surface.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
@@ -104,30 +105,54 @@ class ConvexTouch {
   bool approaching(double tau) const {
     if constexpr (Degree == 1) {
       // This is the direction along which they have just come within the gap.
-      if (tau == near_[0].begin[0] && entry_speed_ > smallest_speeds(motion_)[0]) return true;
+      if (tau == near_[0].begin[0] && entry_speed_ > tilted_speeds()[0] && meets_along(entry_normal_, gap_(tau))) {
+        return true;
+      }
     }
     return direction(tau).approaching;
   }
 
-  /// The direction, from a to b, along which they overlap least just after tau.
+  /// The direction, from a to b, along which they overlap least just after tau, of those along which they can meet.
   ///
   /// Among directions that are equal within rounding a falling one is taken if none rises: then they approach. (A
   /// rising one will be the greatest, and they part along it.) For faces in one plane both directions of their normal
   /// are equal, and do not show on which side the bodies are: the centres decide.
   TouchDirection direction(double tau) const {
     const Conditions conditions(*this);
-    const auto speeds = smallest_speeds(motion_);
+    const auto speeds = smallest_speeds(motion_), tilted = tilted_speeds();
     const Eigen::Vector3d offset = motion_.position(tau);
-    const double rounding = gap_(tau) / tie;
+    const double gap = gap_(tau);
+    const double rounding = gap / tie;
+    // As many directions are left out as have to be: few are asked about. None is where they overlap along all.
+    std::array<bool, capacity> left_out{};
     double most = -TimeSpans::infinity;
     for (const Condition& each : conditions) most = std::max(most, each(tau));
+    bool all = !(most > -gap);
+    for (bool found = all; !found;) {
+      most = -TimeSpans::infinity;
+      std::size_t at = capacity;
+      for (std::size_t i = 0; i < conditions.size(); ++i) {
+        if (left_out[i] || !(conditions[i](tau) > most)) continue;
+        most = conditions[i](tau);
+        at = i;
+      }
+      found = at == capacity || meets_along(conditions[at].normal, gap);
+      if (!found) left_out[at] = true;
+      all = at == capacity;
+    }
+    if (all) {
+      left_out.fill(false);
+      for (const Condition& each : conditions) most = std::max(most, each(tau));
+    }
     TouchDirection chosen{Eigen::Vector3d::Zero(), -TimeSpans::infinity, false};
     int chosen_trend = 0;
-    for (const Condition& each : conditions) {
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const Condition& each = conditions[i];
       const double separation = each(tau);
-      if (separation < most - rounding) continue;
+      if (left_out[i] || separation < most - rounding) continue;
+      if (!all && !meets_along(each.normal, gap)) continue;
       if (opposite_of(conditions, each)(tau) >= most - rounding && dot(each.normal, offset) < 0) continue;
-      const int trend = each.trend(tau, speeds);
+      const int trend = each.trend(tau, separation > -gap ? tilted : speeds);
       // Rising before falling before neither; then the greatest.
       const auto weight = [](int t) { return t > 0 ? 2 : (t < 0 ? 1 : 0); };
       const bool better =
@@ -141,16 +166,17 @@ class ConvexTouch {
   }
 
   /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
-  /// separation that is the greatest of all has its maximum, or `end`. At other times the greatest separation goes on
-  /// rising.
+  /// separation that is the greatest of all along which they can meet has its maximum, or `end`. At other times the
+  /// greatest separation goes on rising.
   double turning(double tau, double end) const {
     if constexpr (Degree >= 3) {
       const Conditions conditions(*this);
       for (const Condition& each : conditions) {
         each_maximum(PolynomialCertificate<Degree>{{{each.separation}, 0.0}}, tau, end, [&](double top) {
           const double least = each(top) + gap_(top) / tie;
-          const bool greatest =
-              std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return c(top) <= least; });
+          const bool greatest = std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) {
+            return c(top) <= least || !meets_along(c.normal, gap_(top));
+          });
           if (greatest) end = top;
           return greatest;
         });
@@ -164,9 +190,10 @@ class ConvexTouch {
         const double top = -p[1] / (2 * p[2]);
         if (!(top > tau && top < end)) continue;
         const double least = each(top) + gap_(top) / tie;
-        if (std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) { return c(top) <= least; })) {
-          end = top;
-        }
+        const bool greatest = std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) {
+          return c(top) <= least || !meets_along(c.normal, gap_(top));
+        });
+        if (greatest) end = top;
       }
     }
     return end;
@@ -213,6 +240,29 @@ class ConvexTouch {
       }
     }
   };
+
+  /// Speeds up to these are rounding errors also where they are along the normals of triangles.
+  auto tilted_speeds() const {
+    auto speeds = smallest_speeds(motion_);
+    double tilt = tilt_of(a_);
+    if constexpr (std::is_same_v<B, PlacedTriangle>) tilt += tilt_of(b_);
+    if constexpr (Degree <= 2) {
+      speeds[0] += tilt * norm(motion_.coefficients[1]);
+      if constexpr (Degree == 2) speeds[1] += 2 * tilt * norm(motion_.coefficients[2]);
+    } else {
+      for (std::size_t i = 1; i <= Degree; ++i) speeds[i] += tilt * norm(motion_.coefficients[i]);
+    }
+    return speeds;
+  }
+
+  /// Whether the two can meet along a normal: where a surface goes on, beyond the outermost edge or corner of the
+  /// triangle, and comes out farther, something else of it is met first.
+  bool meets_along(const Eigen::Vector3d& normal, double gap) const {
+    if constexpr (std::is_same_v<B, PlacedTriangle>) {
+      if (!is_outermost(b_, -normal, gap)) return false;
+    }
+    return is_outermost(a_, normal, gap);
+  }
 
   /// Calls visit(condition) for both sides of every axis.
   template <class Visit>
@@ -267,6 +317,7 @@ class ConvexTouch {
       if (begin > enter_) {
         enter_ = begin;
         entry_speed_ = decides ? -condition.separation[1] : 0.0;
+        entry_normal_ = condition.normal;
       }
     } else if (c0 >= 0) {
       leave_ = -TimeSpans::infinity;
@@ -312,6 +363,8 @@ class ConvexTouch {
     explicit Conditions(const ConvexTouch& touch) {
       touch.every_condition([this](const Condition& condition) { items_[size_++] = condition; });
     }
+    std::size_t size() const { return size_; }
+    const Condition& operator[](std::size_t i) const { return items_[i]; }
     const Condition* begin() const { return items_.data(); }
     const Condition* end() const { return items_.data() + size_; }
 
@@ -337,6 +390,7 @@ class ConvexTouch {
   double enter_ = -TimeSpans::infinity;
   double leave_ = TimeSpans::infinity;
   double entry_speed_ = 0;  ///< along the axis on which they come within the gap last
+  Eigen::Vector3d entry_normal_ = Eigen::Vector3d::Zero();
 };
 
 }  // namespace kds::collision

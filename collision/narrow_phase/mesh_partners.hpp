@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/capsule_touch.hpp"
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/obb_descent.hpp"
+#include "collision/narrow_phase/placed_surface.hpp"
 #include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/shapes/feature.hpp"
@@ -30,7 +31,9 @@ struct PlacedMesh {
   PlacedMesh(const MeshShape& shape, const Eigen::Matrix3d& rotation)
       : PlacedMesh(*shape.mesh, rotation, shape.scale) {}
   PlacedMesh(const Mesh& m, const Eigen::Matrix3d& rotation, double s)
-      : mesh(m), scale(s), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
+      : mesh(m), surface(m, s, rotation), pose{m.tree().nodes(), s * m.tree().unit(), rotation} {}
+  PlacedMesh(const PlacedMesh&) = delete;  // its triangles refer to surface
+  PlacedMesh& operator=(const PlacedMesh&) = delete;
 
   using Part = PlacedTriangle;
   template <int Degree>
@@ -38,11 +41,8 @@ struct PlacedMesh {
   static constexpr bool solid = false;
 
   PlacedTriangle triangle(const LeafTriangle& leaf) const {
-    PlacedTriangle placed;
-    for (std::size_t i = 0; i < 3; ++i) {
-      placed.vertices[i] = placed_vertex(pose.rotation, scale, mesh.vertices()[leaf.vertices[i]]);
-    }
-    return placed;
+    const auto& [a, b, c] = leaf.vertices;
+    return {{surface.vertex(a), surface.vertex(b), surface.vertex(c)}, &surface, leaf.index};
   }
 
   template <class Visit>
@@ -53,7 +53,7 @@ struct PlacedMesh {
   }
 
   const Mesh& mesh;
-  double scale;
+  PlacedSurface surface;
   TreePose pose;
 };
 

@@ -117,11 +117,18 @@ class Query : private PairTimes<Degree> {
       walk(goal, slice,
            [&](std::uint32_t i, const PlacedTriangle& triangle, std::uint32_t j, const Part& part, TimeWindow window) {
              if (!may_touch(triangle, part, motion_, margin_, window)) return;
-             const Touching touch = touching_of(triangle, part, {tau, tau});
-             const TouchDirection here = touch.direction(tau);
-             const bool inside = touch.first_inside(tau) == tau;
-             const double since = inside ? touch.enter(tau) : here.separation;
-             const Rank rank{inside ? (here.approaching ? 0 : 1) : 2, since, i, j};
+             // How parts that only overlap, or have just parted, touch does not depend on what is around them.
+             const PlacedTriangle alone{triangle.vertices};
+             const Touching by_itself = touching_of(alone, by_itself_too(part), {tau, tau});
+             const bool inside = by_itself.first_inside(tau) == tau;
+             const TouchDirection here = inside ? touching_of(triangle, part, {tau, tau}).direction(tau)
+                                                : by_itself.direction(tau);
+             const auto met = [&] {  // or it is behind what is around it
+               return !in_pieces || here.separation <= -gap_(tau) ||
+                      touching_of(triangle, part, {tau, tau}).first_inside(tau) == tau;
+             };
+             const double since = inside ? by_itself.enter(tau) : here.separation;
+             const Rank rank{inside ? (here.approaching && met() ? 0 : 1) : 2, since, i, j};
              if (best && !(rank < *best)) return;
              best = rank;
              direction = here;
@@ -154,6 +161,11 @@ class Query : private PairTimes<Degree> {
       };
       TreePairDescent<Degree, Goal, decltype(leaf)>(a_.pose, b_.pose, test, goal, leaf).run();
     }
+  }
+
+  static Part by_itself_too(const Part& part) {
+    if constexpr (std::is_same_v<Part, PlacedTriangle>) return {part.vertices};
+    return part;
   }
 
   /// Whether sharp corners may meet.

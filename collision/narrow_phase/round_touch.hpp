@@ -79,14 +79,14 @@ struct NearestPart {
 /// of the distance is a polynomial with the coefficients q_k = sum y_j . y_(k-j), q_k / (2 |y0|) the first of the
 /// distance that is not zero. A y_k is known as well as smallest_speeds() says, and the products to a few roundings.
 ///
-/// `nearest_part(place)`: of a place of the point.
+/// `nearest`: at tau; `inside`: whether it is a face for certain, and the point not about to leave it. `tilt`: by how
+/// much its direction may be off. `nearest_part(place)`: of another place of the point.
 template <int Degree, class Nearest>
-bool curve_approaches(const RelativeMotion<Degree>& motion, const ContactGap<Degree>& gap, double tau,
-                      const Nearest& nearest_part) {
+bool curve_approaches(const RelativeMotion<Degree>& motion, double gap, double tau, double tilt,
+                      const NearestPart& nearest, bool inside, const Nearest& nearest_part) {
   constexpr double rounding = 16 * 0x1p-53;
   const auto speeds = smallest_speeds(motion);
   const Eigen::Vector3d place = motion.position(tau);
-  const NearestPart nearest = nearest_part(place);
   PathCoefficients<Degree> y;
   std::array<double, std::size_t{Degree} + 1> error;
   double factorial = 1;
@@ -94,14 +94,14 @@ bool curve_approaches(const RelativeMotion<Degree>& motion, const ContactGap<Deg
     const int order = static_cast<int>(k);
     factorial *= std::max(order, 1);
     y[k] = motion.coefficient(order, tau);
-    error[k] = derivative_at(speeds, order, tau) / factorial;
+    error[k] = derivative_at(speeds, order, tau) / factorial + tilt * norm(y[k]);
   }
   y[0] = nearest.apart;
   NearestPart ahead = nearest;
-  for (std::size_t k = 1; k <= Degree && nearest.dimension != 2; ++k) {
+  for (std::size_t k = 1; k <= Degree && !inside; ++k) {
     const Eigen::Vector3d sideways = y[k] - (dot(y[0], y[k]) / dot(y[0], y[0])) * y[0];
     if (!(sideways.cwiseAbs().maxCoeff() > error[k])) continue;
-    ahead = nearest_part(place + gap(tau) * normalized(sideways));
+    ahead = nearest_part(place + gap * normalized(sideways));
     break;
   }
   for (Eigen::Vector3d& c : y) {

@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace kds::collision {
 
@@ -21,9 +22,13 @@ struct Interval {
   double high;
 };
 
-/// A triangle in world orientation about the centre of its body.
+struct PlacedSurface;
+
+/// A triangle in world orientation about the centre of its body; by itself, or as a part of a surface.
 struct PlacedTriangle {
   std::array<Eigen::Vector3d, 3> vertices;
+  const PlacedSurface* surface = nullptr;
+  std::uint32_t index = 0;  ///< in the surface
 
   Interval project(const Eigen::Vector3d& axis) const {
     const double x = dot(axis, vertices[0]);

@@ -1,5 +1,6 @@
 #include "collision/shapes/mesh.hpp"
 
+#include "collision/shapes/mesh_neighbours.hpp"
 #include "collision/shapes/outer_points.hpp"
 #include "collision/shapes/solid_integrals.hpp"
 #include "collision/shapes/surface_tree.hpp"
@@ -111,6 +112,7 @@ struct Mesh::OnDemand {
     }
   };
   Made<SurfaceTree> surface_tree;
+  Made<MeshNeighbours> neighbours;
   Made<SolidIntegrals> solid;
   Made<OuterPoints> outer_points;
 };
@@ -153,6 +155,10 @@ Mesh::Mesh(std::vector<Vector3d> vertices, std::vector<Triangle> triangles)
 
 const SurfaceTree& Mesh::surface_tree() const {
   return on_demand_->surface_tree.get([this](auto& tree) { tree.emplace(vertices_, triangles_); });
+}
+
+const MeshNeighbours& Mesh::neighbours() const {
+  return on_demand_->neighbours.get([this](auto& neighbours) { neighbours.emplace(vertices_, triangles_); });
 }
 
 const SolidIntegrals& Mesh::solid() const {

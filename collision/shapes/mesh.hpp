@@ -17,6 +17,7 @@
 
 namespace kds::collision {
 
+class MeshNeighbours;
 class OuterPoints;
 class SurfaceTree;
 struct SolidIntegrals;
@@ -77,6 +78,8 @@ class Mesh {
   /// The tree for contact with meshes that bend: made when it is first asked for, in O(n log n). Threads may ask at
   /// once.
   const SurfaceTree& surface_tree() const;
+  /// What is beyond edges and around vertices: made when it is first asked for, in O(n log n). Threads may ask at once.
+  const MeshNeighbours& neighbours() const;
   /// Volume, centre and second moments of what it bounds, by solid_integrals(), which says what it throws: made when
   /// they are first asked for. Threads may ask at once.
   const SolidIntegrals& solid() const;

@@ -275,7 +275,7 @@ void Pairs<Motion>::test(Slot slot) {
       const double start = pair.passes_at == clock_.now ? next_up(clock_.now) : clock_.now;
       if (start <= horizon(pair)) next = certified_first_separation(a, b, start, horizon(pair));
     } else if (resting_.find(pair.a, pair.b) != Resting::none) {
-      next.time = resting_.next_contact(pair.a, pair.b);
+      next = resting_.next_contact(pair.a, pair.b, clock_.now);
     } else if (!(at_rest(a) && at_rest(b))) {
       next = estimated_first_contact(a, b, clock_.now, horizon(pair), mode, pair.memory, &found);
     }
@@ -322,10 +322,12 @@ bool Pairs<Motion>::certify() {
   }
   FoundTouch found;
   const auto a_moves = bodies_.moving(pair.a), b_moves = bodies_.moving(pair.b);
-  // Exact tests of bodies that turn look only a few turns ahead: each goes on where the last one has ended.
-  const double from = turns<Motion> ? contacts_.time(slot) : clock_.now;
+  // Some tests look only a few turns or sizes ahead: each goes on where the last one has ended.
+  const bool rests = !pair.overlapping && resting_.find(pair.a, pair.b) != Resting::none;
+  const double from = turns<Motion> || rests ? contacts_.time(slot) : clock_.now;
   const ContactEstimate next =
-      pair.overlapping
+      rests ? resting_.next_contact(pair.a, pair.b, from)
+      : pair.overlapping
           ? certified_first_separation<Motion>(a_moves, b_moves, from, horizon(pair))
           : certified_first_contact<Motion>(a_moves, b_moves, from, horizon(pair), mode(pair.a, pair.b), &found);
   set_contact(slot, next.time);

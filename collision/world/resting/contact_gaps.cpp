@@ -1,6 +1,9 @@
 #include "collision/world/resting/contact_gaps.hpp"
 
+#include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/response/least_constraint.hpp"
 #include "collision/shapes/shape_forms.hpp"
 #include "collision/shapes/support.hpp"
 #include "collision/vectors.hpp"
@@ -92,6 +95,16 @@ double ContactGaps<Motion>::parting(const Contact& contact) const {
   Vector3d apart = -bodies_.path(contact.a).velocity(clock_.now);
   if (contact.b != no_body) apart += bodies_.path(contact.b).velocity(clock_.now);
   return dot(contact.normal, apart);
+}
+
+template <class Motion>
+double ContactGaps<Motion>::rate_error(const Contact& contact) const {
+  if (!concave(contact)) return rate_rounding;
+  const auto& a = bodies_.path(contact.a);
+  const auto& b = bodies_.path(contact.b);
+  const auto motion = relative_to(a.restarted(clock_.now), b.restarted(clock_.now));
+  const double radii = bodies_[contact.a].bounding_radius + bodies_[contact.b].bounding_radius;
+  return rate_rounding + contact_gap(motion, radii)(0) / size(contact);
 }
 
 template <class Motion>

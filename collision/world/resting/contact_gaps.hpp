@@ -44,6 +44,9 @@ class ContactGaps {
 
   /// The rate at which the two part along the normal.
   double parting(const Contact& contact) const;
+  /// Rates along the normal up to this part of the speeds are errors. On a mesh it is not known where in the contact
+  /// gap a body lies: one that it meets meets it along a line that is off by that gap over its size.
+  double rate_error(const Contact& contact) const;
   /// The gap along the normal. If concave(), the gap at contact.since plus the displacement since then. Precondition:
   /// they have not changed their motions since.
   double along_normal(const Contact& contact) const;

@@ -219,14 +219,26 @@ std::vector<BodySlot> RestingContacts<Motion>::partners(BodySlot id) const {
 /// the resting contact itself, the body is moved away from it by some roundings, as long as the two motions stay as
 /// they are: so the answer does not depend on how often it is asked for.
 template <class Motion>
-double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
+ContactEstimate RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b, double from) {
   const auto a = bodies_.moving(id_a);
   const auto b = bodies_.moving(id_b);
+  const double horizon = clock_.horizon;
   const bool plane = bodies_.unbounded(id_a) || bodies_.unbounded(id_b);
   if (plane || (!concave(a.shape.shape) && !concave(b.shape.shape))) {
-    if (keeps_apart(find(id_a, id_b))) return never;
-    return first_contact(a, b, clock_.now, clock_.horizon, ContactMode::resolved);
+    if (keeps_apart(find(id_a, id_b))) return {never, true};
+    return {first_contact(a, b, from, horizon, ContactMode::resolved), true};
   }
+  // A mesh is searched no farther than motions are likely to last.
+  const double size = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
+  const double some = from + sliding_time(a.motion, b.motion, from, most_slide * size);
+  const double until = some > from ? std::min(some, horizon) : horizon;
+  const auto first = [&](const Vector3d& apart) {
+    const Motion farther = shifted(b.motion, apart);
+    return first_contact(a, MovingShape<Motion>{b.shape, farther}, from, until, ContactMode::resolved);
+  };
+  const auto found = [&](double t) {
+    return t <= until || until == horizon ? ContactEstimate{t, true} : ContactEstimate{until, false};
+  };
   const double began = std::max(a.motion.start, b.motion.start);
   Vector3d out = Vector3d::Zero();
   bool left_behind = false;
@@ -235,22 +247,17 @@ double RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id_b) {
     out += contacts_[slot].normal;
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
-  const double now = clock_.now;
-  if (clustered(id_a) || clustered(id_b)) {  // The approach that the solver's sweeps leave is no contact.
-    const double least = std::min(a.shape.bounding_radius, b.shape.bounding_radius);
-    const Motion farther = shifted(b.motion, approach_slack * least * out);
-    return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
-  }
+  // In a cluster the approach that the solver's sweeps leave is no contact.
+  if (clustered(id_a) || clustered(id_b)) return found(first(approach_slack * size * out));
   if (!left_behind) {
-    const double t = first_contact(a, b, now, clock_.horizon, ContactMode::resolved);
-    if (t != now) return t;
+    const double t = first(Vector3d::Zero());
+    if (t != from) return found(t);
     contacts_[find(id_a, id_b)].left_behind = began;
   }
   const double coordinates =
       a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
-  const double size = a.shape.bounding_radius + b.shape.bounding_radius;
-  const Motion farther = shifted(b.motion, coordinate_slack * (size + coordinates) * out);
-  return first_contact(a, MovingShape<Motion>{b.shape, farther}, now, clock_.horizon, ContactMode::resolved);
+  const double sizes = a.shape.bounding_radius + b.shape.bounding_radius;
+  return found(first(coordinate_slack * (sizes + coordinates) * out));
 }
 
 /// A resting contact ends when the bodies have slid off each other, or have parted by `slack`.
@@ -323,7 +330,7 @@ bool RestingContacts<Motion>::alone_on_face(const Contact& contact) const {
     slides.coefficients[i] = free - dot(contact.normal, apart) * contact.normal;
   }
   slides.coefficients[0] += (first ? -1 : 1) * approach_slack * gaps_.size(contact) * contact.normal;
-  constexpr double soon = 16;  // of the longest spans that a cluster would take
+  constexpr double soon = 16;                              // of the longest spans that a cluster would take
   const double until = now + soon * longest_span(slider);  // beyond the horizon, too: that must make no difference
   const auto a = bodies_.moving(contact.a), b = bodies_.moving(contact.b);
   const double t = first ? first_contact(MovingShape<Motion>{a.shape, slides}, b, now, until, ContactMode::resolved)

@@ -163,8 +163,9 @@ class RestingContacts {
   /// Whether a plane is proven to stay between the two bodies of a contact, so that they do not meet until a motion or
   /// the contact changes.
   bool keeps_apart(Slot contact) const { return contacts_[contact].proven && !gaps_.concave(contacts_[contact]); }
-  /// When two bodies that rest on each other may meet elsewhere.
-  double next_contact(BodySlot a, BodySlot b);
+  /// When two bodies that rest on each other meet elsewhere, from a time on; or, where one of them is a mesh, how far
+  /// ahead that was looked for. Then it is asked again with that time.
+  ContactEstimate next_contact(BodySlot a, BodySlot b, double from);
 
   /// When the next contact ends, by sliding off or parting; process() ends it.
   double next_time() const {
@@ -299,6 +300,7 @@ class RestingContacts {
   bool solve_island(BodySlot id, bool& dissolved);
   Island find_island(BodySlot id);
   bool drop_broken(const Island& island);
+  void stay(const Island& island, std::vector<Motion>& motions) const;
   bool constrain(Island& island, std::size_t order, std::vector<Motion>& motions);
   bool constrain_curves(Island& island, std::vector<Motion>& motions);
   bool press(Motion& motion, Contact& contact) const;

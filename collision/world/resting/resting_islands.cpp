@@ -88,6 +88,7 @@ bool RestingContacts<Motion>::solve_island(BodySlot id, bool& dissolved) {
   std::vector<Motion> motions;
   for (const BodySlot each : island.bodies) motions.push_back(bodies_.motion(each).restarted(clock_.now));
   const std::vector<Motion> before = motions;
+  stay(island, motions);
   if (!constrain(island, 1, motions)) return false;
   const auto take_up_all = [&] {
     for (std::size_t i = 0; i < island.free; ++i) {
@@ -186,7 +187,7 @@ bool RestingContacts<Motion>::drop_broken(const Island& island) {
       if (contact.b != no_body) largest += velocity_terms(bodies_.path(contact.b), clock_.now);
     }
     const double rate = dot(contact.normal, b - a);
-    if (std::abs(rate) <= rate_rounding * largest) continue;
+    if (std::abs(rate) <= rate_rounding * largest || std::abs(rate) <= gaps_.rate_error(contact) * largest) continue;
     any = true;
     if (soon_back(contact, std::abs(rate)) && (rate > 0 || turns(island))) {
       gather(island.bodies.front());
@@ -195,6 +196,23 @@ bool RestingContacts<Motion>::drop_broken(const Island& island) {
     drop(slot);
   }
   return any;
+}
+
+/// Takes away the rates along the normals of contacts with fixed bodies that remain after drop_broken(): they are
+/// errors, and those that part are not taken away by constrain().
+template <class Motion>
+void RestingContacts<Motion>::stay(const Island& island, std::vector<Motion>& motions) const {
+  for (std::size_t k = 0; k < island.contacts.size(); ++k) {
+    const Contact& contact = contacts_[island.contacts[k]];
+    const Touch& touch = island.touches[k];
+    if (contact.fresh || !gaps_.concave(contact) || bodies_.fixed(contact.a) == bodies_.fixed(contact.b)) continue;
+    Vector3d& of_a = motions[touch.a].coefficients[1];
+    Vector3d& of_b = motions[touch.b].coefficients[1];
+    const double rate = dot(contact.normal, of_b - of_a);
+    const double largest = std::max({of_a.cwiseAbs().maxCoeff(), of_b.cwiseAbs().maxCoeff(), contact.solved});
+    if (std::abs(rate) <= rate_rounding * largest) continue;
+    bodies_.fixed(contact.a) ? of_b -= rate* contact.normal : of_a += rate * contact.normal;
+  }
 }
 
 /// Velocities (order 1) or accelerations (2) by least constraint. False if a contact had to be dropped: one that parts,

@@ -3,6 +3,7 @@
 
 #include "collision/body_motion.hpp"
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/response/static_balance.hpp"
 #include "collision/response/turning_impulse.hpp"
 #include "collision/world/bodies.hpp"
@@ -125,7 +126,7 @@ class TurningRest {
   /// Whether a body rests, and so has not the motion that callers gave.
   bool carries(BodySlot slot) const { return slot < of_.size() && of_[slot].rests; }
   bool keeps_apart(Slot) const { return true; }
-  double next_contact(BodySlot, BodySlot) const { return never; }
+  ContactEstimate next_contact(BodySlot, BodySlot, double) const { return {never, true}; }
 
   /// Two bodies are about to meet. Returns whether one of them rests and the impulse decides whether it wakes. It does
   /// not if the other is calm: that body may lie on it soon, and until then bounces off it as off a fixed body.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/mesh_contact.hpp"
+#include "collision/narrow_phase/placed_surface.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "tests/collision/sample_meshes.hpp"
 
@@ -9,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -69,13 +71,28 @@ inline Long triangle_distance(const Corners& a, const Corners& b) {
   return best;
 }
 
-inline std::vector<PlacedTriangle> triangles_of(const PlacedShape& shape) {
-  const auto& [mesh, scale] = std::get<MeshShape>(shape.shape);
-  const auto vertices = mesh->placed_vertices(shape.rotation, scale);
-  std::vector<PlacedTriangle> triangles;
-  for (const auto& [a, b, c] : mesh->triangles()) triangles.push_back({{vertices[a], vertices[b], vertices[c]}});
-  return triangles;
-}
+/// All triangles of a mesh, and what is around them.
+class PlacedTriangles {
+ public:
+  explicit PlacedTriangles(const PlacedShape& shape) : PlacedTriangles(std::get<MeshShape>(shape.shape), shape) {}
+  PlacedTriangles(const PlacedTriangles&) = delete;
+  PlacedTriangles& operator=(const PlacedTriangles&) = delete;
+
+  std::size_t size() const { return triangles_.size(); }
+  const PlacedTriangle& operator[](std::size_t i) const { return triangles_[i]; }
+  auto begin() const { return triangles_.begin(); }
+  auto end() const { return triangles_.end(); }
+
+ private:
+  PlacedTriangles(const MeshShape& shape, const PlacedShape& placed)
+      : surface_(*shape.mesh, shape.scale, placed.rotation) {
+    for (std::uint32_t i = 0; i < shape.mesh->triangles().size(); ++i) triangles_.push_back(surface_.triangle(i));
+  }
+
+  PlacedSurface surface_;
+  std::vector<PlacedTriangle> triangles_;
+};
+inline PlacedTriangles triangles_of(const PlacedShape& shape) { return PlacedTriangles(shape); }
 
 template <int Degree>
 Vector3l exact_place(const RelativeMotion<Degree>& motion, Long tau) {
