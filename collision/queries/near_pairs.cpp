@@ -2,6 +2,7 @@
 
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/queries/standing_body.hpp"
+#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/shape.hpp"
 
 #include <algorithm>
@@ -45,12 +46,12 @@ std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double 
                                         const BodyFilter& filter) {
   const double now = world.now();
   if (!(distance > 0 && distance <= largest_magnitude)) {
-    throw std::invalid_argument("pairs_nearer_than: the distance " + std::to_string(distance) +
+    throw std::invalid_argument("pairs_nearer_than: the distance " + detail::number_text(distance) +
                                 " is not a positive number below 2^205");
   }
   if (!(until >= now && until < never)) {
-    throw std::invalid_argument("pairs_nearer_than: " + std::to_string(until) + " is not a finite time from now on (" +
-                                std::to_string(now) + ")");
+    throw std::invalid_argument("pairs_nearer_than: " + detail::number_text(until) +
+                                " is not a finite time from now on (" + detail::number_text(now) + ")");
   }
   std::vector<BodyId> bodies;
   double offset = 0;

@@ -3,16 +3,15 @@
 
 #include <charconv>
 #include <cmath>
-#include <sstream>
 #include <string>
 
 namespace kds::collision::detail {
 
-/// With enough digits to identify the number.
+/// The shortest that reads back to the same double.
 inline std::string number_text(double value) {
-  std::ostringstream out;
-  out << value;
-  return out.str();
+  char digits[32];
+  const auto [end, error] = std::to_chars(digits, digits + sizeof digits, value);
+  return {digits, end};
 }
 
 /// A power of two, as limits are: "2^-40 (9.1e-13)".

@@ -25,7 +25,7 @@ using namespace kds;
 using namespace kds::collision;
 using Eigen::Vector3d;
 using Line = certificates::PointMotion<1>;
-using Parabola = certificates::PointMotion<2>;
+using Path = certificates::PointMotion<2>;
 
 TEST_CASE("recipe: remove a body in a callback") {
   constexpr std::uint32_t bullets = 2, targets = 4;
@@ -117,10 +117,10 @@ TEST_CASE("recipe: a proximity alarm that follows a body") {
 
 TEST_CASE("recipe: a kick, and a jump") {
   World<2> world({});
-  const BodyId ball = world.add_body(
-      {.shape = Sphere{0.5}, .motion = {Parabola::parabola({0, 0, 9}, {1, 0, 0}, {0, 0, -2})}, .mass = 2});
+  const BodyId ball =
+      world.add_body({.shape = Sphere{0.5}, .motion = {Path::parabola({0, 0, 9}, {1, 0, 0}, {0, 0, -2})}, .mass = 2});
   world.advance_to(3);
-  Parabola motion = world.free_motion(ball).restarted(world.now());
+  Path motion = world.free_motion(ball).restarted(world.now());
   motion.coefficients[1] += Vector3d(0, 0, 12) / world.mass(ball);  // an impulse; coefficients[2] is half of gravity
   world.update_motion(ball, motion);
   world.advance_to(4);
@@ -173,12 +173,12 @@ TEST_CASE("recipe: a room whose walls meet the shapes of bodies") {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {  // solid is what is 5 or more from the middle
       walls.push_back(world.add_body({.shape = HalfSpace{-side * Vector3d::Unit(axis), -5},
-                                      .motion = {Parabola::line({0, 0, 0}, {0, 0, 0})},
+                                      .motion = {Path::line({0, 0, 0}, {0, 0, 0})},
                                       .fixed = true}));
     }
   }
   const BodyId box = world.add_body(
-      {.shape = Box{{1, 1, 2}}, .motion = {Parabola::parabola({0, 0, 0}, {4, 0, 0}, {0, 0, -8})}, .restitution = 0.5});
+      {.shape = Box{{1, 1, 2}}, .motion = {Path::parabola({0, 0, 0}, {4, 0, 0}, {0, 0, -8})}, .restitution = 0.5});
   world.advance_to(30);
   CHECK(world.resting(walls[4], box));  // on the floor, and slides to and fro
   CHECK(world.motion(box).position(30)[2] == Approx(-3));
@@ -188,7 +188,7 @@ TEST_CASE("recipe: gravity, restitution, walls") {
   World<2> world({.walls = Walls{{-5, -5, 0}, {5, 5, 9}}});
   const Vector3d gravity(0, 0, -2);
   const BodyId ball = world.add_body(
-      {.shape = Sphere{0.5}, .motion = {Parabola::parabola({0, 0, 1.5}, {0, 0, 0}, gravity)}, .restitution = 0.5});
+      {.shape = Sphere{0.5}, .motion = {Path::parabola({0, 0, 1.5}, {0, 0, 0}, gravity)}, .restitution = 0.5});
   world.advance_to(1.5);  // down in 1 s, at 2; up again at 1
   CHECK(world.motion(ball).position(1.5)[2] == 0.75);
   world.advance_to(60);
@@ -203,9 +203,9 @@ TEST_CASE("recipe: rest") {
   } told;
   World<2> world({.response = Response::elastic}, &told);
   const BodyId floor =
-      world.add_body({.shape = Box{{5, 5, 1}}, .motion = {Parabola::line({0, 0, -1}, {0, 0, 0})}, .fixed = true});
+      world.add_body({.shape = Box{{5, 5, 1}}, .motion = {Path::line({0, 0, -1}, {0, 0, 0})}, .fixed = true});
   const BodyId crate = world.add_body({.shape = Box{{0.5, 0.5, 0.5}},
-                                       .motion = {Parabola::parabola({0, 0, 1.5}, {0, 0, 0}, {0, 0, -2})},
+                                       .motion = {Path::parabola({0, 0, 1.5}, {0, 0, 0}, {0, 0, -2})},
                                        .restitution = 0});
   world.advance_to(60);
   CHECK(told.rested == std::vector<double>{1});
@@ -218,12 +218,11 @@ TEST_CASE("recipe: rest") {
 
 TEST_CASE("recipe: a platform that is driven") {
   World<2> world({.response = Response::elastic});
-  const std::vector<Parabola> way{Parabola::line({0, 0, 0}, {0, 0, 0}, 0), Parabola::line({0, 0, 0}, {0, 0, 0.5}, 2),
-                                  Parabola::line({0, 0, 2}, {0, 0, 0}, 6)};
+  const std::vector<Path> way{Path::line({0, 0, 0}, {0, 0, 0}, 0), Path::line({0, 0, 0}, {0, 0, 0.5}, 2),
+                              Path::line({0, 0, 2}, {0, 0, 0}, 6)};
   world.add_body({.shape = Box{{2, 2, 0.5}}, .motion = way, .fixed = true});  // a kinematic body: fixed, with a script
-  const BodyId crate = world.add_body({.shape = Box{{0.5, 0.5, 0.5}},
-                                       .motion = {Parabola::parabola({0, 0, 2}, {0, 0, 0}, {0, 0, -2})},
-                                       .restitution = 0});
+  const BodyId crate = world.add_body(
+      {.shape = Box{{0.5, 0.5, 0.5}}, .motion = {Path::parabola({0, 0, 2}, {0, 0, 0}, {0, 0, -2})}, .restitution = 0});
   world.advance_to(4);
   CHECK(world.motion(crate).position(4)[2] == Approx(2));  // on top, on the way up
   world.advance_to(20);
@@ -413,7 +412,7 @@ TEST_CASE("recipe: two structures, one clock") {
   Simulator<World<1>, World<2>> simulator(0, bullets, grenades);
   bullets.add_body({.shape = Sphere{1}, .motion = {Line::line({0, 0, 0}, {0, 0, 0})}});
   bullets.add_body({.shape = Sphere{1}, .motion = {Line::line({5, 0, 0}, {-2, 0, 0})}});
-  grenades.add_body({.shape = Sphere{1}, .motion = {Parabola::parabola({0, 0, 2}, {0, 0, 0}, {0, 0, -2})}});
+  grenades.add_body({.shape = Sphere{1}, .motion = {Path::parabola({0, 0, 2}, {0, 0, 0}, {0, 0, -2})}});
   simulator.advance_to(3.5);
   CHECK(order.events == std::vector{'c', 's', 'c'});  // at 1, 1.5 and 3
 }

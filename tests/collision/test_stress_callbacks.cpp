@@ -165,6 +165,22 @@ TEST_CASE("callbacks: bodies that beget bodies without end are stopped", "[world
   }
 }
 
+TEST_CASE("callbacks: bodies that beget bodies, of which none goes, are stopped", "[world][loop]") {
+  for (const auto method : all_methods) {
+    WorldOptions options = with(Response::none, method);
+    options.most_edits = 200;
+    EventLog<1> log;
+    log.then = [](World<1>& world, const Event& e) {
+      if (e.kind == Kind::overlap) world.add_body(ball<1>(0.75, world.motion(e.b).position(0) + Vector3d(1, 0, 0)));
+    };
+    World<1> world(options, &log);
+    world.add_body(ball<1>(0.75, {0, 0, 0}));
+    world.add_body(ball<1>(0.75, {1, 0, 0}));
+    CHECK(stopped(world, 10).find("most_edits") != std::string::npos);
+    CHECK(world.size() == 202);  // 200 is more than 64 for each of the two that there were
+  }
+}
+
 TEST_CASE("callbacks: many changes spread over time, or made outside callbacks, are welcome", "[world][loop]") {
   for (const auto method : all_methods) {
     WorldOptions options = with(Response::callback, method);
