@@ -1,8 +1,10 @@
 // Meshes that bend, in domains: the events are those of one world, bit for bit.
+#include "tests/collision/deforming/folded_strip.hpp"
 #include "tests/collision/parallel/bending_stagings.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <utility>
@@ -72,15 +74,63 @@ TEST_CASE("Domains: balls on a trampoline that reaches through all domains", "[p
   CHECK(seen.events > 4 * 200);
 }
 
-TEST_CASE("Domains: with a mesh that may meet itself a scene is one world", "[parallel]") {
-  ParallelWorld<2> world(tests::with_response(Response::elastic), {.threads = 1, .domains = 4, .halo = 1});
-  auto sheet = trampoline();
-  sheet.self_contacts = true;
-  world.add_body(sheet);
-  for (int i = 0; i < 27; ++i) world.add_body(tests::ball<2>(0.4, {2.0 * (i % 3), 2.0 * (i / 3), 2}, {0, 0, -1}));
-  world.advance_to(2);
-  CHECK(world.counters().contacts > 0);
-  CHECK(world.counters().steps == 0);
+TEST_CASE("Domains: strips are folded down on themselves in all domains, at the instant at which balls meet",
+          "[parallel]") {
+  using Kind = tests::Kind;
+  const tests::Fold fold;
+  const auto strip = [&](const Vector3d& place, double speed = 0) {
+    auto body = tests::fixed_body<1>(fold.shape(), tests::motion<1>(place, {0, speed, 0}));
+    body.self_contacts = true;
+    return body;
+  };
+  double meets_itself = 0;
+  {
+    tests::WholeLog<Path<1>> log;
+    World<1> alone({}, &log);
+    alone.add_body(strip(Vector3d::Zero()));
+    alone.advance_to(3);
+    REQUIRE(log.events.size() == 2);
+    meets_itself = log.events[0].time();
+  }
+  // Two balls on each side of each strip; a strip is first, last or between the two by its number. Some strips move.
+  const auto fill = [&](World<1>& world) {
+    for (int i = 0; i < 10; ++i) {
+      const double x = 5.0 * i;
+      if (i % 3 == 0) world.add_body(strip({x, 0, 0}, i % 2 == 0 ? 0 : 0.25));
+      for (const double y : {4.0, -4.0}) {
+        world.add_body(tests::ball<1>(0.5, {x, y, 0}));
+        if (i % 3 == 1 && y > 0) world.add_body(strip({x, 0, 0}));
+        world.add_body(tests::ball<1>(0.5, {x, y + (y > 0 ? 1 : -1) * (1 + meets_itself), 0}, {0, y > 0 ? -1.0 : 1.0, 0}));
+      }
+      if (i % 3 == 2) world.add_body(strip({x, 0, 0}, 0.125));
+    }
+    world.set_timer(meets_itself);
+  };
+  for (const Response response : {Response::elastic, Response::none}) {
+    const tests::Staging<Path<1>> scene{tests::with_response(response), fill, 6, "folded strips"};
+    tests::WholeLog<Path<1>> log;
+    World<1> world(scene.options, &log);
+    fill(world);
+    world.advance_to(6);
+    const auto at_once = [&](bool itself) {
+      return std::ranges::count_if(log.events, [&](const tests::Event& event) {
+        return event.kind == Kind::contact && event.time() == meets_itself && (event.a == event.b) == itself;
+      });
+    };
+    CHECK(at_once(true) == 10);
+    CHECK(at_once(false) == 20);
+    Seen seen;
+    for (const std::size_t domains : {2u, 3u, 5u}) {
+      for (const std::size_t processes : {1u, 2u}) {
+        Manner manner{.processes = processes, .polls = domains};
+        manner.parallel.threads = 2, manner.parallel.domains = domains, manner.parallel.halo = 1;
+        compare_runs(scene, manner, seen);
+      }
+    }
+    INFO(seen.text());
+    CHECK(seen.divided == 6);
+    CHECK(seen.whole == 0);
+  }
 }
 
 }  // namespace kds::collision::test_bending_domains

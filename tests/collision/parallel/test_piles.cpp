@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include <cstddef>
+#include <initializer_list>
 
 namespace kds::collision::test_piles {
 namespace {
@@ -55,13 +56,33 @@ void add_struck_rows(World<2>& world) {
   }
 }
 
+/// Blocks of balls that touch, five by five of them, so that several stand where four cells meet; balls strike each from
+/// four sides, and most of them at the same instants.
+void add_blocks(World<2>& world) {
+  world.add_body(tests::fixed_body<2>(Box{{60, 60, 1}}, tests::motion<2>({0, 0, -1})));
+  for (int i = -2; i <= 2; ++i) {
+    for (int j = -2; j <= 2; ++j) {
+      const Vector3d middle(6.0 * i, 6.0 * j, 0.5);
+      for (const double x : {-0.5, 0.5}) {
+        for (const double y : {-0.5, 0.5}) world.add_body(soft_ball(middle + Vector3d(x, y, 0)));
+      }
+      for (const double side : {-1.0, 1.0}) {
+        const double speed = (i + j) % 2 == 0 ? 1 : 2, off = (i * j) % 3 == 0 ? 0.5 : 0.25;
+        world.add_body(soft_ball(middle + side * Vector3d(2.5, off, 0), {-side * speed, 0, 0}));
+        world.add_body(soft_ball(middle + side * Vector3d(off, -2.5, 0), {0, side * speed, 0}));
+      }
+    }
+  }
+}
+
 /// The scene in domains with one thread and two, alone and by two processes.
-Seen run_in_all_manners(const Staging<certificates::PointMotion<2>>& scene, double halo) {
+Seen run_in_all_manners(const Staging<certificates::PointMotion<2>>& scene, double halo,
+                        std::initializer_list<std::size_t> numbers_of_domains = {2, 3}) {
   Seen seen;
-  for (const std::size_t domains : {2u, 3u}) {
+  for (const std::size_t domains : numbers_of_domains) {
     for (const std::size_t processes : {1u, 2u}) {
       Manner manner{.processes = processes, .polls = 2};
-      manner.parallel.threads = domains - 1, manner.parallel.domains = domains;
+      manner.parallel.threads = domains % 2 + 1, manner.parallel.domains = domains;
       manner.parallel.halo = halo, manner.parallel.longest_window = 0.25;
       compare_runs(scene, manner, seen);
     }
@@ -103,6 +124,13 @@ TEST_CASE("Domains: rows of balls across a border are struck at their far ends",
   CHECK(seen.tables > 3);
   CHECK(seen.windows > 40);
   CHECK(seen.corrected > 3);
+}
+
+TEST_CASE("Domains: blocks of balls where four cells meet are struck from all sides at one time", "[parallel]") {
+  const Seen seen = run_in_all_manners({tests::with_response(Response::elastic), add_blocks, 2, "blocks"}, 2, {4, 7});
+  INFO(seen.text());
+  CHECK(seen.tables == 4);
+  CHECK(seen.windows > 20);
 }
 
 }  // namespace kds::collision::test_piles
