@@ -161,7 +161,8 @@ void Domains<Motion>::find_islands(const Engine<Motion>& from, double now) {
       if (island.size() == 1) continue;
       places.clear();
       for (const BodySlot slot : island) places.push_back(place_at(bodies.path(slot), now));
-      if (!division_->find_knowers(places, all)) {  // Its bodies go to their owners, from where they are gathered again.
+      if (!division_->find_knowers(places,
+                                   all)) {  // Its bodies go to their owners, from where they are gathered again.
         islands_are_known_ = false;
         continue;
       }

@@ -141,8 +141,10 @@ class PileMaker {
           put(Box{{width_, 6, 1}}, middle + Vector(0, side * 6, 0));
         }
         return;
-      case 2: return put(Sphere{4 * width_}, middle - Vector(0, 0, 4 * width_));
-      case 3: return put(MeshShape{cube(), width_}, middle - Vector(0, 0, width_));
+      case 2:
+        return put(Sphere{4 * width_}, middle - Vector(0, 0, 4 * width_));
+      case 3:
+        return put(MeshShape{cube(), width_}, middle - Vector(0, 0, width_));
       default:
         put(Box{{width_, 8, 1}}, middle - Vector(width_, 0, 1));
         put(Box{{width_, 8, 1}}, middle + Vector(width_, 0, -1.5));

@@ -80,8 +80,12 @@ TEST_CASE("Events of domains are merged into the order of one world, cascades at
 
 TEST_CASE("Of events of one time overlaps are told first, then walls, contacts, and those of meshes with themselves",
           "[parallel]") {
-  const std::vector<DomainEvent> log{event(1, 2, 3, Kind::overlap), event(1, 5, 5, Kind::wall), event(1, 0, 1),
-                                     event(1, 6, 7),                event(1, 2, 2),             event(1, 3, 3)};
+  const std::vector<DomainEvent> log{event(1, 2, 3, Kind::overlap),
+                                     event(1, 5, 5, Kind::wall),
+                                     event(1, 0, 1),
+                                     event(1, 6, 7),
+                                     event(1, 2, 2),
+                                     event(1, 3, 3)};
   EventMerge merge(divided(log, 2));
   for (const DomainEvent& right : log) CHECK(merge.take_next().order() == right.order());
   CHECK(merge.empty());
