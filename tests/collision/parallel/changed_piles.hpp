@@ -35,8 +35,8 @@ void change_pile(World<Degree>& world, const Event& event, std::uint64_t seed, s
   const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
   const Vector some(x, y, z), gravity(0, 0, -5);
   if (what == 0) {
-    const double radius = 0.25 * random.integer(1, 2);
     const Vector from = place + Vector(0, 0, 1) + (random.one_in(2) ? Vector(Vector::Zero()) : some);
+    const double radius = 0.25 * random.integer(1, 2);
     auto added = ball<Degree>(radius, from, some, gravity);
     added.restitution = random.one_in(2) ? 0 : 0.5;
     added.motion = {motion<Degree>(from, some, gravity, t)};
