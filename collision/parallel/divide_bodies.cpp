@@ -42,7 +42,6 @@ void Domains<Motion>::add_shares(std::size_t count,
     };
     if (description.box) refuse("has a box function");
     if (description.attached_to) refuse("is attached to another");
-    if (bends(description.shape)) refuse("is a mesh that bends");
     store_.engine().edits().add_body(description);
   }
   if (team_.count() == 1) return;
@@ -163,7 +162,11 @@ void Domains<Motion>::find_islands(const Engine<Motion>& from, double now) {
       if (island.size() == 1) continue;
       places.clear();
       for (const BodySlot slot : island) places.push_back(place_at(bodies.path(slot), now));
-      islands_are_known_ = division_->find_knowers(places, all) && islands_are_known_;
+      if (!division_->find_knowers(places,
+                                   all)) {  // Its bodies go to their owners, from where they are gathered again.
+        islands_are_known_ = false;
+        continue;
+      }
       for (const BodySlot slot : island) {
         know_islands_[slot] = all;
         for (const BodySlot sensor : bodies.attachments().sensors(slot)) know_islands_[sensor] = all;

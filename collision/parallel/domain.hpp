@@ -27,8 +27,8 @@ namespace kds::collision {
 /// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
   /// False if something has happened that domains cannot compute: bodies that turn have come to rest, a body rests on a
-  /// fixed one that has an owner, an island has bodies of three domains or reaches through the halo, a pair is let
-  /// pass, or a script takes a body far away at one instant.
+  /// fixed one that has an owner, an island reaches through the halo, a pair is let pass, or a script takes a body far
+  /// away at one instant.
   bool divisible = true;
   /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;

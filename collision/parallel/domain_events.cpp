@@ -132,6 +132,7 @@ bool Domain<Motion>::tells_of_wall(BodySlot slot) const {
 template <class Motion>
 void Domain<Motion>::contact(World&, const PairEvent& event) {
   record(DomainEvent::Kind::contact, event);
+  if (event.a == event.b) return;  // A mesh that bends goes through itself.
   begin_cause(DomainEvent::Cause::Phase::contacts, key(event.a), key(event.b), event.contact.time);
   note_islands();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);

@@ -62,24 +62,25 @@ void Domain<Motion>::note_islands() {
   }
 }
 
-/// If bodies of an island are owned by this domain and another one: both mark what has happened to it, from which
-/// events of both may follow.
+/// If bodies of an island are owned by this domain and others: all mark what has happened to it, from which events of
+/// all may follow. Each two have a mark of their own, and each domain has its marks in the order of the others, so they
+/// are passed by pair after pair: (0, 1), (0, 2), (1, 2).
 template <class Motion>
 void Domain<Motion>::mark(std::span<const BodySlot> island, const DomainEvent::Cause& cause, double t) {
   bool mine = false;
   std::set<DomainIndex> others;
   for (const BodySlot slot : island) owner_of(slot) == index_ ? void(mine = true) : void(others.insert(owner_of(slot)));
-  if (!mine || others.empty()) return;
-  if (others.size() > 1) report_.divisible = false;
-  if (others.size() > 1 || !logs_) return;
+  if (!mine || !logs_) return;
   const BodyId first = engine_.bodies().keys().key(island.front());
-  const DomainEvent event{Kind::mark, *others.begin(), first, first, {.time = t}, 0, 0, cause};
-  const auto same = [&](const DomainEvent& other) {
-    return other.a == event.a && other.other_owner == event.other_owner;
-  };
-  if (std::ranges::any_of(marks_, same)) return;
-  marks_.push_back(event);
-  put(event);
+  for (const DomainIndex other : others) {
+    const DomainEvent event{Kind::mark, other, first, first, {.time = t}, 0, 0, cause};
+    const auto same = [&](const DomainEvent& before) {
+      return before.a == event.a && before.other_owner == event.other_owner;
+    };
+    if (std::ranges::any_of(marks_, same)) continue;
+    marks_.push_back(event);
+    put(event);
+  }
 }
 
 /// Finds the islands of followed bodies, as they are at t.

@@ -42,9 +42,10 @@ class ParallelListener {
 /// threads and domains and the lengths of windows: docs/parallel.md has the laws and why they hold.
 ///
 /// Scenes that cannot be divided are run as one world, as long as that is so: few bodies; bodies that turn come to
-/// rest; others lean on each other in an island that reaches far out of a cell; meshes that may meet themselves; box
-/// functions; response `callback` without WorldOptions::law; reports of pairs or of pieces. What this costs is in
-/// docs/parallel.md.
+/// rest; others lean on each other in an island that reaches far out of a cell; box functions; response `callback`
+/// without WorldOptions::law; reports of pairs or of pieces.
+///
+/// What this costs is in docs/parallel.md.
 ///
 /// Cost: copies are (1 + 2 halo / size of a cell)^3 - 1 of the bodies, and all they do is computed twice. Memory for
 /// the worlds of all domains, and some 200 bytes more for each body. Of several processes each has that of its own
@@ -77,7 +78,7 @@ class BasicParallelWorld final {
   /// first of the scene, then come those of process 1, and so on; so ids are as if one had added all. No process has
   /// all bodies in memory then, until the scene is run as one world or whole() is called. All processes call it, once,
   /// before there are any bodies; else throws std::logic_error. Throws as add_body() and, naming the body,
-  /// std::invalid_argument for one that has a box function, is attached to another, or is a mesh that bends.
+  /// std::invalid_argument for one that has a box function or is attached to another.
   void add_shares(std::size_t count, const std::function<Description(std::size_t)>& body);
 
   /// The scene as one world, at now(): for all changes, queries, audits and snapshots. It must not be advanced, and is

@@ -47,7 +47,14 @@ struct DomainEvent {
   /// The event from which another one follows. It need not be told: pieces of motion are not.
   struct Cause {
     /// In the order in which a world processes what is due at one time.
-    enum class Phase : std::uint8_t { pieces, walls, ends_of_rest, spans, contacts } phase = Phase::pieces;
+    enum class Phase : std::uint8_t {
+      pieces,
+      walls,
+      ends_of_rest,
+      spans,
+      contacts,
+      self_contacts
+    } phase = Phase::pieces;
     BodyId a = 0, b = 0;  ///< by which those of one phase come; of pieces, which begin together, always the same
 
     friend auto operator<=>(const Cause&, const Cause&) = default;
@@ -70,7 +77,8 @@ struct DomainEvent {
   Cause origin() const {
     if (follows()) return cause;
     if (kind == Kind::overlap) return {};
-    return {kind == Kind::wall ? Cause::Phase::walls : Cause::Phase::contacts, a, b};
+    if (kind == Kind::wall) return {Cause::Phase::walls, a, b};
+    return {a == b ? Cause::Phase::self_contacts : Cause::Phase::contacts, a, b};
   }
 
   /// What follows from an event comes right after it, in the order that WorldListener states. Contacts and separations

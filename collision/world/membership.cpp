@@ -108,7 +108,7 @@ void Membership<Motion>::enter(std::span<const BodySlot> entering, Begin begin) 
   pairs_.set_begin(Begin::moving);
   walls_.schedule(entries);
   for (const Entry& entry : entries) {
-    if (!self_contacts_.enter(entry.slot)) continue;
+    if (!self_contacts_.enter(entry.slot) || begin != Begin::entering) continue;
     const BodyId id = bodies_.id_of(entry.slot);
     reports_.add(Reports::Kind::overlap, id, id, self_contacts_.contact(entry.slot));
   }

@@ -352,6 +352,7 @@ void RestingContacts<Motion>::process() {
     last_event_.is_span = true;
     last_event_.rank.a = bodies_.keys().key(id);
     spans_.clear(id);
+    if (bodies_.numbered()) solved_.push_back(id);  // Also where nothing is left to be solved for.
     disturb(id);
     return solve();
   }

@@ -13,9 +13,6 @@ bool Transfer<Motion>::is_divisible() const {
   const bool told_of_work = parts_.options.report_pairs || parts_.options.report_pieces;
   if (!guard_.whole() || told_of_work) return false;
   if (parts_.volumes.any_from_callers()) return false;
-  for (BodySlot slot = 0; slot < parts_.bodies.slots(); ++slot) {
-    if (parts_.bodies.alive(slot) && parts_.bodies[slot].self_contacts) return false;
-  }
   return parts_.resting.divisible() && parts_.reports.empty();
 }
 
@@ -155,6 +152,7 @@ void Transfer<Motion>::go_on(double t, std::span<const Overlap> overlaps) {
     parts_.tumbling.go_on();
     parts_.resting.go_on();
     parts_.walls.become();
+    for (BodySlot slot = 0; slot < parts_.bodies.slots(); ++slot) parts_.self_contacts.enter(slot);
     parts_.rebuild_broad_phase();
     go_on_overlapping(overlaps);
   });

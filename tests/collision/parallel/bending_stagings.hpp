@@ -12,8 +12,8 @@
 
 namespace kds::collision::tests {
 
-/// The scenes of StageMaker, and sheets that bend: that stand, move or jump by scripts, are sensors, or, where bodies
-/// pass through each other, move by themselves.
+/// The scenes of StageMaker, and sheets that bend: that stand, move or jump by scripts, are sensors, meet themselves,
+/// or, where bodies pass through each other, move by themselves.
 template <class Motion>
 class BendingStageMaker {
   using Vector = Eigen::Vector3d;
@@ -37,11 +37,12 @@ class BendingStageMaker {
   BasicBodyDescription<Motion> sheet(const WorldOptions& options) {
     const samples::Sheet flat(3);
     const double size = random_.between(0.5, 2);
+    const bool may_meet_itself = random_.one_in(3);
     std::vector<MeshScript::Keyframe> keyframes;
     double time = random_.between(-0.5, 0.5);
     for (int left = random_.integer(1, 5); left > 0; --left) {
       auto positions = flat.positions;
-      for (Vector& p : positions) p = size * (p + vector(0.3));
+      for (Vector& p : positions) p = size * (p + vector(may_meet_itself ? 0.75 : 0.3));
       keyframes.push_back({time, positions});
       time += random_.between(0.1, 0.8);
     }
@@ -49,6 +50,7 @@ class BendingStageMaker {
     sheet.shape = BendingMesh{std::make_shared<const MeshScript>(std::move(keyframes), flat.triangles)};
     sheet.motion = {Motion{}};
     path(sheet.motion[0]).coefficients[0] = Vector::Constant(2) + vector(3);
+    sheet.self_contacts = may_meet_itself;
     sheet.sensor = random_.one_in(5);
     sheet.fixed = sheet.sensor || options.response != Response::none || random_.one_in(2);
     // What moves would press others against walls.

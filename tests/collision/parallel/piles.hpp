@@ -27,6 +27,7 @@ class PileMaker {
     radius_ = coarse_ ? 0.5 : random_.between(0.3, 0.6);
     rebound_ = random_.one_in(3) ? 0 : random_.one_in(2) ? 0.5 : random_.between(0, 0.9);
     tilted_ = random_.one_in(5);
+    if constexpr (Degree >= 3) curved_ = random_.one_in(2);
     end_time_ = random_.between(0.3, 2);
   }
 
@@ -81,6 +82,10 @@ class PileMaker {
     body.shape = Sphere{size};
     if (random_.one_in(4)) body.shape = Box{Vector::Constant(size)};
     body.motion = {motion<Degree>(place, velocity, Vector(0, 0, -5))};
+    for (std::size_t i = 3; i <= Degree && curved_; ++i) {
+      const double x = number(-1, 1), z = number(-1, 2);
+      body.motion[0].coefficients[i] = Vector(x, 0, z);
+    }
     body.restitution = random_.one_in(8) ? 1 : rebound_;
     if (random_.one_in(6)) body.mass = random_.between(0.2, 5);
     if (random_.one_in(40)) {  // It is given another motion on the way, or is somewhere else at once.
@@ -136,8 +141,10 @@ class PileMaker {
           put(Box{{width_, 6, 1}}, middle + Vector(0, side * 6, 0));
         }
         return;
-      case 2: return put(Sphere{4 * width_}, middle - Vector(0, 0, 4 * width_));
-      case 3: return put(MeshShape{cube(), width_}, middle - Vector(0, 0, width_));
+      case 2:
+        return put(Sphere{4 * width_}, middle - Vector(0, 0, 4 * width_));
+      case 3:
+        return put(MeshShape{cube(), width_}, middle - Vector(0, 0, width_));
       default:
         put(Box{{width_, 8, 1}}, middle - Vector(width_, 0, 1));
         put(Box{{width_, 8, 1}}, middle + Vector(width_, 0, -1.5));
@@ -162,6 +169,7 @@ class PileMaker {
   Random random_;
   std::uint64_t seed_;
   bool coarse_ = false, tilted_ = false;
+  bool curved_ = false;  ///< forces change with time
   double width_ = 16, radius_ = 0.5, rebound_ = 0.5, end_time_ = 1;
   std::vector<Description> bodies_;
 };

@@ -1,6 +1,7 @@
 // Each of several processes adds and stores a part of the bodies: the events are those of one world, bit for bit.
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "tests/collision/deforming/folded_strip.hpp"
 #include "tests/collision/event_log.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
 #include "tests/collision/parallel/thread_processes.hpp"
@@ -42,6 +43,16 @@ std::vector<std::size_t> even_ends(std::size_t bodies, std::size_t processes) {
   std::vector<std::size_t> ends;
   for (std::size_t rank = 1; rank <= processes; ++rank) ends.push_back(bodies * rank / processes);
   return ends;
+}
+
+/// One that bends, and meets itself from 2.5 s on.
+template <int Degree>
+BodyDescription<Degree> folded_strip(const WorldOptions& options) {
+  const Vector3d velocity(0, options.walls ? 0 : 0.25, 0);
+  auto strip = tests::fixed_body<Degree>(tests::Fold().shape(), tests::motion<Degree>({2, 2, 2}, velocity));
+  strip.self_contacts = true;
+  strip.fixed = options.response != Response::none;
+  return strip;
 }
 
 struct Seen {
@@ -90,7 +101,8 @@ TEMPLATE_TEST_CASE_SIG("Shares: processes that add some bodies each have the eve
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const auto one = tests::trial<Degree>(seed);
+    auto one = tests::trial<Degree>(seed);
+    if (seed % 5 == 0) one.scene.bodies.insert(one.scene.bodies.begin() + seed % 7, folded_strip<Degree>(one.options));
     Random random(seed + 77);
     const std::size_t processes = 1 + random.below(5);
     std::vector<std::size_t> ends;
