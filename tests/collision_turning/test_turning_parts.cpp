@@ -25,7 +25,7 @@ using certificates::RigidMotion;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using tests::through_bytes;
+using kds::tests::through_bytes;
 
 template <int Degree>
 using Description = BasicBodyDescription<RigidMotion<Degree>>;
@@ -115,7 +115,11 @@ struct Lying final : RestingListener<RigidMotion<2>> {
     clock.now = flights * options.shortest_flight;
     const double x = bodies.path(ball).coefficients[0][0];
     if (!rest.carries(ball)) bodies.move(ball, at({x, 0, 1}, gravity, clock.now));
-    return rest.comes_to_rest(floor, ball, {.time = clock.now, .point = {x, 0, 0}, .normal = {0, 0, 1}});
+    return meet(ball, {.time = clock.now, .point = {x, 0, 0}, .normal = {0, 0, 1}});
+  }
+  /// Of a ball and the floor.
+  bool meet(BodySlot ball, const Contact& contact) {
+    return rest.comes_to_rest(floor, ball, contact, [](BodySlot) { return Mobility::of_spherical(1, 1 / 0.4); });
   }
   bool is_still(BodySlot slot) const {
     const auto& c = bodies.path(slot).coefficients;
@@ -280,7 +284,7 @@ TEST_CASE("Rest of bodies that turn: one that moves is not calm, and has to be c
   auto fast = part.bodies.motion(ball);
   fast.path.coefficients[1][0] = 1;
   part.bodies.move(ball, fast);
-  CHECK_FALSE(part.rest.comes_to_rest(part.floor, ball, {.time = part.clock.now, .normal = {0, 0, 1}}));
+  CHECK_FALSE(part.meet(ball, {.time = part.clock.now, .normal = {0, 0, 1}}));
   CHECK(part.rest.remembers_nothing());
   for (int flight = 9; flight < 17; ++flight) CHECK_FALSE(part.touch(ball, flight));
   CHECK(part.touch(ball, 17.5));

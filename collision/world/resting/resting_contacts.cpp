@@ -330,8 +330,9 @@ bool RestingContacts<Motion>::alone_on_face(const Contact& contact) const {
     slides.coefficients[i] = free - dot(contact.normal, apart) * contact.normal;
   }
   slides.coefficients[0] += (first ? -1 : 1) * approach_slack * gaps_.size(contact) * contact.normal;
-  constexpr double soon = 16;                              // of the longest spans that a cluster would take
-  const double until = now + soon * longest_span(slider);  // beyond the horizon, too: that must make no difference
+  constexpr double soon = 16;  // of the longest spans that a cluster would take
+  // Beyond the horizon, too: that must make no difference.
+  const double until = now + soon * longest_span(slider);
   const auto a = bodies_.moving(contact.a), b = bodies_.moving(contact.b);
   const double t = first ? first_contact(MovingShape<Motion>{a.shape, slides}, b, now, until, ContactMode::resolved)
                          : first_contact(a, MovingShape<Motion>{b.shape, slides}, now, until, ContactMode::resolved);

@@ -211,7 +211,11 @@ void RestingContacts<Motion>::stay(const Island& island, std::vector<Motion>& mo
     const double rate = dot(contact.normal, of_b - of_a);
     const double largest = std::max({of_a.cwiseAbs().maxCoeff(), of_b.cwiseAbs().maxCoeff(), contact.solved});
     if (std::abs(rate) <= rate_rounding * largest) continue;
-    bodies_.fixed(contact.a) ? of_b -= rate* contact.normal : of_a += rate * contact.normal;
+    if (bodies_.fixed(contact.a)) {
+      of_b -= rate * contact.normal;
+    } else {
+      of_a += rate * contact.normal;
+    }
   }
 }
 

@@ -93,7 +93,7 @@ TEST_CASE("boxes and balls are apart for as long as a plane is proven to separat
     const float part = checked_part(view, side_a.outer_points(), points_b);
     const Shape shape_b = with_ball ? Shape(ball) : Shape(box_b);
     const auto gap = [&](double when) {
-      return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, shape_b, when)) / size;
+      return static_cast<double>(kds::tests::TurningOracle::gap(a, box_a, b, shape_b, when)) / size;
     };
     CAPTURE(round, part);
     const bool clear = gap(t) > 0.05;
@@ -175,7 +175,7 @@ TEST_CASE("a plane does not outlast bodies that approach by their accelerations 
 }
 
 TEST_CASE("meshes do not penetrate for as long as a plane is proven to separate them", "[turning]") {
-  using Oracle = tests::TurningMeshOracle;
+  using Oracle = kds::tests::TurningMeshOracle;
   const std::uint64_t seed = 568;
   CAPTURE(seed);
   Random random(seed);

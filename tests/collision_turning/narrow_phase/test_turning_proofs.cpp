@@ -56,7 +56,7 @@ Corners corners_of(const ObbNode& node, double unit, const Motion& motion, doubl
       const Vector3d direction(node.axes[0][axis], node.axes[1][axis], node.axes[2][axis]);
       corner += (k >> axis & 1 ? 1 : -1) * static_cast<double>(node.half_extents[axis]) * direction;
     }
-    const auto place = tests::TurningMeshOracle::point(motion, unit * corner, when);
+    const auto place = kds::tests::TurningMeshOracle::point(motion, unit * corner, when);
     corners[k] = Wide(place[0], place[1], place[2]);
   }
   return corners;
@@ -127,7 +127,7 @@ TEST_CASE("nodes are apart for as long as is proven", "[turning]") {
     for (int i = 0; i < most_together; ++i) nodes.a[i] = numbers_of(node_a), nodes.b[i] = numbers_of(node_b);
     CAPTURE(round);
     const auto gap = [&](double when) {
-      return static_cast<double>(tests::TurningOracle::gap(a, box_a, b, box_b, when));
+      return static_cast<double>(kds::tests::TurningOracle::gap(a, box_a, b, box_b, when));
     };
     if (const unsigned apart = nodes_apart_by(0.25, view, nodes); apart != 0) {
       CHECK(apart == 0xFF);
@@ -192,7 +192,7 @@ TEST_CASE("nodes of meshes of any size are apart for as long as is proven", "[tu
 }
 
 TEST_CASE("triangles are apart for as long as is proven, and conditions that are sure hold", "[turning]") {
-  using Oracle = tests::TurningMeshOracle;
+  using Oracle = kds::tests::TurningMeshOracle;
   const std::uint64_t seed = 561;
   CAPTURE(seed);
   Random random(seed);
@@ -272,7 +272,7 @@ TEST_CASE("conditions that begin to hold go on for as long as they surely rise",
 }
 
 TEST_CASE("triangles side by side are apart for as long as floats prove", "[turning]") {
-  using Oracle = tests::TurningMeshOracle;
+  using Oracle = kds::tests::TurningMeshOracle;
   const std::uint64_t seed = 564;
   CAPTURE(seed);
   Random random(seed);
