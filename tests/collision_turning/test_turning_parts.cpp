@@ -25,7 +25,7 @@ using certificates::RigidMotion;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using kds::tests::through_bytes;
+using kds::collision::tests::through_bytes;
 
 template <int Degree>
 using Description = BasicBodyDescription<RigidMotion<Degree>>;
