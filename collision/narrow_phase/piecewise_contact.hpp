@@ -12,9 +12,9 @@
 
 namespace kds::collision {
 
-/// For degree 3 and above it is decided exactly whether bodies part along a normal, and when they cease to: by the
-/// derivative of their distance along it. (In doubles the speed of a path that comes to rest would be lost in the
-/// roundings of its terms.)
+/// Whether bodies part along a normal, and when they cease to, is decided exactly where doubles do not tell, by the
+/// derivative of their distance along it: so it does not depend on when it is asked. For degree 3 and above always. (In
+/// doubles the speed of a path that comes to rest would be lost in the roundings of its terms.)
 template <int Degree>
 DerivativeCertificate<certificates::PlaneSeparation<Degree>> parting(const Contact& contact,
                                                                      const TranslatingShape<Degree>& a,
@@ -25,20 +25,24 @@ DerivativeCertificate<certificates::PlaneSeparation<Degree>> parting(const Conta
 /// Whether b moves towards a along the normal just after t.
 template <int Degree>
 bool approaching(const Contact& contact, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
-  if constexpr (Degree >= 3) return sign_after(parting(contact, a, b), contact.time) < 0;
-  const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
-  if (rate != 0) return rate < 0;
-  return dot(contact.normal, b.motion.acceleration(contact.time) - a.motion.acceleration(contact.time)) < 0;
+  if constexpr (Degree <= 2) {
+    const double rate = dot(contact.normal, b.motion.velocity(contact.time) - a.motion.velocity(contact.time));
+    constexpr double rounding = 0x1p-49;  // of the terms of a velocity, and of the product
+    const auto terms = [&](const auto& motion) {
+      double sum = motion.coefficients[1].cwiseAbs().sum();
+      if constexpr (Degree == 2)
+        sum += 2 * motion.coefficients[2].cwiseAbs().sum() * std::abs(contact.time - motion.start);
+      return sum;
+    };
+    if (std::abs(rate) > rounding * (terms(a.motion) + terms(b.motion))) return rate < 0;
+  }
+  return sign_after(parting(contact, a, b), contact.time) < 0;
 }
 
 /// When bodies that move apart along the contact's normal will turn towards each other.
 template <int Degree>
 double turning_time(const Contact& contact, const TranslatingShape<Degree>& a, const TranslatingShape<Degree>& b) {
-  const double t = contact.time;
-  if constexpr (Degree >= 3) return std::max(next_up(t), failure_time(parting(contact, a, b), t));
-  const double rate = dot(contact.normal, b.motion.velocity(t) - a.motion.velocity(t));
-  const double bend = dot(contact.normal, b.motion.acceleration(t) - a.motion.acceleration(t));
-  return bend < 0 ? std::max(next_up(t), t + rate / -bend) : never;
+  return Degree == 1 ? never : std::max(next_up(contact.time), failure_time(parting(contact, a, b), contact.time));
 }
 
 /// The time from which to search for a contact that counts, not before t0: later if the bodies have just been in
