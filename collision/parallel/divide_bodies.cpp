@@ -108,7 +108,6 @@ template <class Motion>
 void Domains<Motion>::begin(Division division, std::span<const BodySlot> answered, std::vector<Overlap> overlaps,
                             bool logs, double now) {
   drop();
-  store_.engine().read_all();
   islands_are_known_ = true;
   const bool whole = !store_.is_part();
   division_ = std::make_unique<Division>(std::move(division));

@@ -181,7 +181,6 @@ void Domain<Motion>::run(double until) {
 /// the store is to have the present ones.
 template <class Motion>
 void Domain<Motion>::note_pieces(double since) {
-  engine_.read_all();
   const auto& bodies = engine_.bodies();
   for (BodySlot slot = 0; slot < known_.size(); ++slot) {
     if (bodies.alive(slot) && bodies.path(slot).start >= since) mark_changed(slot);

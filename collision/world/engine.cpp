@@ -260,26 +260,29 @@ void Engine<Motion>::advance_to(double t) {
   } else {
     unheard.of.set_unheard_until(t);
   }
-  while (next_step(t)) {
+  const auto read = [&] {
+    if constexpr (turns<Motion>) motions_.read_all();
+  };
+  try {
+    while (next_step(t)) {
+    }
+  } catch (...) {
+    if (guard_.whole()) read();  // The listener has thrown.
+    throw;
   }
+  read();
 }
 
 template <class Motion>
 const Motion& Engine<Motion>::motion(BodyId id) {
   const BodySlot slot = bodies().slot_of(id);
-  if constexpr (turns<Motion>) motions_.read(slot);
+  if constexpr (turns<Motion>) {
+    if (guard_.stepping()) motions_.read(slot);
+  }
   return bodies().motion(slot);
 }
 
 /// A listener that has asked for all once may do so at each event: until the end of the call none is left alone.
-template <class Motion>
-void Engine<Motion>::read_all() {
-  if constexpr (turns<Motion>) {
-    if (guard_.stepping()) return look_at_all();
-    motions_.read_all();
-  }
-}
-
 template <class Motion>
 void Engine<Motion>::look_at_alone() {
   parts_.tumbling.set_unheard_until(-never);
@@ -315,7 +318,7 @@ bool Engine<Motion>::advance_for(double budget_seconds, double t) {
 template <class Motion>
 void Engine<Motion>::audit(double t) {
   guard_.require_whole("World::audit");
-  read_all();
+  look_within_step();
   parts_.audit(t);
 }
 

@@ -35,18 +35,17 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   /// What callers change and ask. Bodies that have been left alone (turning/turning_pieces.cpp) are looked at before
-  /// anything is changed, and have their present pieces before these are read.
+  /// anything is changed. Between two calls they have their present pieces, so to ask changes nothing; within one, by
+  /// listeners, they have not.
   Edits<Motion>& edits() { return look_at_all(), edits_; }
-  const Queries<Motion>& queries() { return read_all(), queries_; }
-  WorldCounters counters() { return read_all(), parts_.all_counters(); }
+  const Queries<Motion>& queries() { return look_within_step(), queries_; }
+  WorldCounters counters() { return look_within_step(), parts_.all_counters(); }
   const Motion& motion(BodyId id);
   double now() const { return queries_.now(); }
   Transfer<Motion>& transfer() { return transfer_; }
   const Transfer<Motion>& transfer() const { return transfer_; }
   const WorldParts<Motion>& parts() const { return parts_; }
   const Bodies<Motion>& bodies() const { return parts_.bodies; }
-  /// Before bodies(), parts() and transfer() are read.
-  void read_all();
 
   void advance_to(double t);
   bool step(double limit);
@@ -91,6 +90,9 @@ class Engine {
     }
   }
   void look_at_alone();
+  void look_within_step() {
+    if (guard_.stepping()) look_at_all();
+  }
   /// Whether an event that is due changes what can be observed.
   bool happens(const auto&) const { return true; }
   bool happens(const Volumes<Motion>& volumes) const { return volumes.from_caller(volumes.next_body()); }

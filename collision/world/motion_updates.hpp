@@ -87,7 +87,6 @@ class MotionUpdates final : private RestingListener<Motion> {
   Pairs<Motion>& pairs_;
   const std::unique_ptr<BroadPhase<Motion::degree>>& broad_phase_;
   BodySlot reported_ = no_body;
-  double read_at_ = -never;  ///< when those that are alone were read, if none has been left alone since
 };
 
 }  // namespace kds::collision

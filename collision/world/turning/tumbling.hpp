@@ -74,7 +74,7 @@ void archive_members(Archive& archive, Tumbler<Motion>& body) {
 ///
 /// Where nobody is told of pieces, those of a body that is far from all others need not be taken when they begin: it is
 /// left alone for a while, and its pieces are made one after the other when it is looked at again, or when its motion
-/// is read. They are the same.
+/// is read or a call ends. They are the same.
 ///
 /// Cost: nothing for other bodies; 1 us a piece and O(log n), beside the tests of its pairs; 0.5 us a piece of a body
 /// that is left alone, and of a symmetric top that is 1 us for all of its pieces together.

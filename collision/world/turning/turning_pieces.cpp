@@ -15,10 +15,7 @@ void MotionUpdates<Motion>::turn_on() requires(turns<Motion>) {
   // What is alone no longer may be left alone again, but not for less than its present piece lasts.
   if (tumbling_.is_alone(slot)) bodies_.move(slot, tumbling_.catch_up(slot, clock_.now));
   const double until = left_alone_until(slot);
-  if (until > std::max(clock_.now, bodies_[slot].turns_until)) {
-    read_at_ = -never;
-    return tumbling_.leave_alone(slot, until);
-  }
+  if (until > std::max(clock_.now, bodies_[slot].turns_until)) return tumbling_.leave_alone(slot, until);
   turn(slot, bodies_[slot].turns_until > clock_.now ? bodies_.motion(slot) : tumbling_.take_next().motion);
   reports_.add(Reports::Kind::moved, bodies_.id_of(slot), bodies_.id_of(slot), {.time = clock_.now});
 }
@@ -75,9 +72,8 @@ void MotionUpdates<Motion>::read(BodySlot slot) requires(turns<Motion>) {
 
 template <class Motion>
 void MotionUpdates<Motion>::read_all() requires(turns<Motion>) {
-  if (!tumbling_.any_alone() || read_at_ == clock_.now) return;
+  if (!tumbling_.any_alone()) return;
   for (BodySlot slot = 0; slot < bodies_.slots(); ++slot) read(slot);
-  read_at_ = clock_.now;
 }
 
 /// The body goes on along its path and turns otherwise. Pairs with a body that is alone wait until that is looked at.
