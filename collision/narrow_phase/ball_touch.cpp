@@ -159,13 +159,7 @@ NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) c
   const Vector3d face = unit(cross(triangle_.edge(0), triangle_.edge(1)));
   const Vector3d apart = place - nearest.point;
   if (nearest.dimension == 2) return {apart, 2, face};
-  constexpr double widest = 9;       // in gaps: the corners of the prism
-  constexpr double least = 0x1p-20;  // a ball that is so small that this matters meets edges as they are
-  const double height = dot(face, apart);
-  const bool shallow = std::abs(height) > radius_ - gap;
-  if (gap > 0 && shallow && norm(Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height))) {
-    return {height * face, 2, face};
-  }
+  if (gap > 0 && is_over_face(apart, face, radius_, gap)) return {dot(face, apart) * face, 2, face};
   return {apart, nearest.dimension,
           nearest.dimension == 1 ? unit(triangle_.edge(nearest.index)) : Vector3d(Vector3d::Zero())};
 }

@@ -245,12 +245,8 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   SegmentWay way = shortest_way(triangle_, centre, half_);
   const bool inside = way.dimension == 2;
   // Over the slab of the triangle at an end the face is the nearest, though the slab is wider by some gaps.
-  constexpr double widest = 9;
-  constexpr double least = 0x1p-20;
-  const double height = dot(face, way.apart);
-  const bool shallow = std::abs(height) > radius_ - gap;
-  if (!inside && shallow && norm(across(way.apart, face)) <= std::min(widest * gap, least * std::abs(height))) {
-    way.apart = height * face;
+  if (!inside && is_over_face(way.apart, face, radius_, gap)) {
+    way.apart = dot(face, way.apart) * face;
     way.dimension = 2;
   }
   const bool through = deepest.separation < 0;

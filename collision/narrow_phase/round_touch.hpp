@@ -71,6 +71,17 @@ struct NearestPart {
   Eigen::Vector3d direction;  ///< unit: along an edge, out of a face
 };
 
+/// Whether the middle of something round, which is at `apart` from the edge or corner of a face that is nearest to it,
+/// counts as over the face all the same: it is no deeper than a gap, and over the prism of the face, which is wider
+/// than that by some gaps.
+inline bool is_over_face(const Eigen::Vector3d& apart, const Eigen::Vector3d& face, double radius, double gap) {
+  constexpr double widest = 9;       // in gaps: the corners of the prism
+  constexpr double least = 0x1p-20;  // what is so small that this matters meets edges as they are
+  const double height = dot(face, apart);
+  if (!(std::abs(height) > radius - gap)) return false;
+  return norm(Eigen::Vector3d(apart - height * face)) <= std::min(widest * gap, least * std::abs(height));
+}
+
 /// Whether a point on a path of degree 3 or above comes nearer to a polyhedron just after tau: the sign of the first
 /// derivative of the squared distance from the nearest part that exceeds rounding errors; if it is about to pass from
 /// one part to another, from an edge to a face, say, of the part that it comes to.

@@ -2,15 +2,13 @@
 #pragma once
 
 #include "collision/narrow_phase/contact.hpp"
-#include "collision/shapes/polytope.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <optional>
 #include <variant>
 
@@ -28,13 +26,8 @@ inline std::optional<ContactEdge> contact_edge(const Shape& shape, const Feature
   if (const auto* const capsule = std::get_if<Capsule>(&shape)) {
     return ContactEdge{Eigen::Vector3d::UnitZ(), capsule->radius};
   }
-  if (const auto* const hull = std::get_if<ConvexHull>(&shape)) {
-    const auto points = hull->polytope->points();
-    return ContactEdge{points[feature.second] - points[feature.first]};
-  }
-  if (const auto* const mesh = std::get_if<MeshShape>(&shape)) {
-    const auto points = mesh->mesh->vertices();
-    return ContactEdge{points[feature.second] - points[feature.first]};
+  if (const auto mesh = triangles_of(shape)) {
+    return ContactEdge{mesh->vertices()[feature.second] - mesh->vertices()[feature.first]};
   }
   if (!std::holds_alternative<Box>(shape)) return std::nullopt;
   ContactEdge edge;  // Its two vertices differ in one bit, that of its axis.
