@@ -1,7 +1,7 @@
 #include "collision/world_options.hpp"
 
-#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/shape.hpp"
+#include "kds/number_text.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -11,7 +11,7 @@ namespace kds::collision {
 void validate(const WorldOptions& options) {
   if (!std::isfinite(options.start_time)) throw std::invalid_argument("WorldOptions.start_time: must be finite");
   if (std::abs(options.start_time) > largest_magnitude) {
-    throw std::invalid_argument("WorldOptions.start_time: must not be beyond " + detail::power_text(largest_magnitude));
+    throw std::invalid_argument("WorldOptions.start_time: must not be beyond " + power_text(largest_magnitude));
   }
   if (!(options.window > 0)) throw std::invalid_argument("WorldOptions.window: must be > 0");
   if (!(options.rate >= 0) || !std::isfinite(options.rate)) {
@@ -33,7 +33,7 @@ void validate(const WorldOptions& options) {
   if (!(options.shortest_flight > 0)) throw std::invalid_argument("WorldOptions.shortest_flight: must be > 0");
   constexpr double least_error = 0x1p-30;
   if (!(options.orientation_error >= least_error && options.orientation_error <= 0.125)) {
-    throw std::invalid_argument("WorldOptions.orientation_error: must be from " + detail::power_text(least_error) +
+    throw std::invalid_argument("WorldOptions.orientation_error: must be from " + power_text(least_error) +
                                 " to 0.125 rad");
   }
   if (options.walls) {

@@ -1,6 +1,6 @@
 #include "io/event_csv.hpp"
 
-#include "io/number_text.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #include "io/mesh_file.hpp"
 
 #include "collision/shapes/mesh.hpp"
-#include "io/number_text.hpp"
 #include "io/polygon.hpp"
+#include "kds/number_text.hpp"
 
 #include <assimp/scene.h>
 

@@ -4,10 +4,10 @@
 #include "collision/body_motion.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "collision/shapes/shape_forms.hpp"
-#include "io/number_text.hpp"
 #include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
 #include "io/replay_page/three_script.hpp"
+#include "kds/number_text.hpp"
 
 #include <nlohmann/json.hpp>
 

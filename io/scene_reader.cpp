@@ -3,7 +3,6 @@
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/mesh_script.hpp"
 #include "io/checksum.hpp"
-#include "io/number_text.hpp"
 #include "io/scene_file/body_checks.hpp"
 #include "io/scene_file/json_node.hpp"
 #include "io/scene_file/material_reader.hpp"
@@ -11,6 +10,7 @@
 #include "io/scene_file/pivot.hpp"
 #include "io/scene_file/shape_reader.hpp"
 #include "io/scene_file/table_reader.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <array>

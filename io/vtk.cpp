@@ -3,10 +3,10 @@
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/shape_forms.hpp"
 #include "io/base64.hpp"
-#include "io/number_text.hpp"
 #include "io/pictures/body_surface.hpp"
 #include "io/pictures/compound_surface.hpp"
 #include "io/pictures/half_space_patch.hpp"
+#include "kds/number_text.hpp"
 
 #include <unistd.h>
 

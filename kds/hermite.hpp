@@ -1,6 +1,8 @@
 // Hermite's polynomials: pieces of trajectories that are given by what they are at their two ends.
 #pragma once
 
+#include "kds/number_text.hpp"
+
 #include <array>
 #include <cmath>
 #include <stdexcept>
@@ -45,7 +47,7 @@ namespace detail {
 inline double duration_of_piece(const char* function, double t0, double t1) {
   const double duration = t1 - t0;
   if (duration > 0 && std::isfinite(duration) && std::isfinite(t0)) return duration;
-  throw std::invalid_argument(std::string(function) + ": from " + std::to_string(t0) + " to " + std::to_string(t1) +
+  throw std::invalid_argument(std::string(function) + ": from " + number_text(t0) + " to " + number_text(t1) +
                               " is no stretch of time");
 }
 

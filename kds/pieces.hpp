@@ -4,6 +4,7 @@
 #include "kds/audit.hpp"
 #include "kds/events/default_event_queue.hpp"
 #include "kds/framework/moving_set.hpp"
+#include "kds/number_text.hpp"
 #include "kds/raised_flag.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
@@ -126,7 +127,7 @@ class Pieces final : private MovingSet<E>::Observer {
 
   void process_due(double now) override {
     if (next_time() < now)
-      throw std::logic_error("Pieces: an edit at " + std::to_string(now) + " would pass over a piece");
+      throw std::logic_error("Pieces: an edit at " + number_text(now) + " would pass over a piece");
     while (!processing_ && next_time() <= now) process();
   }
   void inserted(Id /*id*/, double /*now*/) override {}

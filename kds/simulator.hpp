@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/arithmetic/strict.hpp"
+#include "kds/number_text.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/statistics.hpp"
 
@@ -105,8 +106,8 @@ class Simulator {
   void advance_to(double t) {
     if (!std::isfinite(t)) throw std::invalid_argument("Simulator::advance_to: the time must be finite");
     if (t < now_) {
-      throw std::invalid_argument("Simulator::advance_to: the clock stands at " + std::to_string(now_) +
-                                  " and cannot go back to " + std::to_string(t));
+      throw std::invalid_argument("Simulator::advance_to: the clock stands at " + number_text(now_) +
+                                  " and cannot go back to " + number_text(t));
     }
     while (step(t)) {
     }
@@ -166,7 +167,7 @@ class Simulator {
     std::apply([&](const auto&... s) { (consider(s), ...); }, structures_);
     if (first.behind) first.time = now_;
     if (first.time < now_) [[unlikely]]
-      refuse(first.index, "is due at " + std::to_string(first.time) + ": it was changed at a time before the clock");
+      refuse(first.index, "is due at " + number_text(first.time) + ": it was changed at a time before the clock");
     // A structure may know of events beyond the horizon, where others do not know of theirs.
     return first.time <= horizon_ ? first : Next{never, 0};
   }
@@ -192,11 +193,11 @@ class Simulator {
                     { structure.now() } -> std::same_as<double>;
                   }) {
       if (const double now = structure.now(); now > now_) [[unlikely]]
-        refuse(index, "was advanced by itself to " + std::to_string(now));
+        refuse(index, "was advanced by itself to " + number_text(now));
     }
   }
   [[noreturn]] void refuse(std::size_t index, const std::string& what) const {
-    throw std::logic_error("Simulator: the clock stands at " + std::to_string(now_) + ", and structure " +
+    throw std::logic_error("Simulator: the clock stands at " + number_text(now_) + ", and structure " +
                            std::to_string(index) + " (in the order of the arguments, from 0) " + what);
   }
 

@@ -3,6 +3,7 @@
 
 #include "kds/audit.hpp"
 #include "kds/framework/kinetic.hpp"
+#include "kds/number_text.hpp"
 #include "structures/periodic_lawson.hpp"
 #include "structures/periodic_mesh.hpp"
 #include "structures/periodic_predicates.hpp"
@@ -63,7 +64,7 @@ class PeriodicDelaunayRule {
     for (const double period : periods) {
       if (period > 0 && period <= certificates::longest_period) continue;
       throw std::invalid_argument("PeriodicDelaunay: a period must be > 0 and at most 2^900, not " +
-                                  std::to_string(period));
+                                  number_text(period));
     }
   }
 

@@ -1,5 +1,7 @@
 #include "collision/deforming/deforming_mesh.hpp"
 
+#include "kds/number_text.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -38,7 +40,7 @@ DeformingMesh<Degree>::DeformingMesh(Positions positions, std::span<const Mesh::
 template <int Degree>
 void DeformingMesh<Degree>::check_step(const char* function, double t0, double t1) const {
   if (!(std::isfinite(t0) && std::isfinite(t1) && t0 < t1)) {
-    refuse(function, "from " + std::to_string(t0) + " to " + std::to_string(t1) + " is no stretch of time");
+    refuse(function, "from " + number_text(t0) + " to " + number_text(t1) + " is no stretch of time");
   }
 }
 

@@ -6,6 +6,7 @@
 #include "collision/deforming/feature_nearness.hpp"
 #include "collision/deforming/surface_contact.hpp"
 #include "collision/vectors.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -129,8 +130,8 @@ SurfacePair<Degree>::SurfacePair(const Surface& a, const Surface& b, const Surfa
   query_.from = std::max(query_.from, t0);
   query_.until = std::min(query_.until, t1);
   if (!(query_.from <= query_.until)) {
-    throw std::invalid_argument("surface contact: from " + std::to_string(query.from) + " until " +
-                                std::to_string(query.until) + " is no part of the stretch of time");
+    throw std::invalid_argument("surface contact: from " + number_text(query.from) + " until " +
+                                number_text(query.until) + " is no part of the stretch of time");
   }
   if (!(query_.tolerance >= 0)) throw std::invalid_argument("surface contact: the tolerance must be >= 0");
   // Three roundings, outward.

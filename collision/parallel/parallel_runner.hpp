@@ -8,6 +8,7 @@
 #include "collision/parallel/untold_events.hpp"
 #include "collision/parallel/window_length.hpp"
 #include "collision/world/engine_image.hpp"
+#include "kds/number_text.hpp"
 #include "kds/raised_flag.hpp"
 
 #include <algorithm>
@@ -127,8 +128,8 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   void advance_to(double t) {
     require_outside("ParallelWorld::advance_to");
     if (!(t >= now_ && t != never)) {
-      throw std::invalid_argument("ParallelWorld::advance_to: " + std::to_string(t) +
-                                  " is not a finite time from now on (" + std::to_string(now_) + ")");
+      throw std::invalid_argument("ParallelWorld::advance_to: " + number_text(t) +
+                                  " is not a finite time from now on (" + number_text(now_) + ")");
     }
     if (!apart() && world_.now() != now_) {
       throw std::logic_error("ParallelWorld::advance_to: the whole world has been advanced by itself");

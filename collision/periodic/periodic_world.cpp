@@ -8,6 +8,7 @@
 #include "collision/vectors.hpp"
 #include "collision/world/queue_room.hpp"
 #include "kds/audit.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -193,8 +194,8 @@ bool PeriodicWorld<Degree>::step(double limit) {
 template <int Degree>
 void PeriodicWorld<Degree>::advance_to(double t) {
   if (!(t >= now() && t < never)) {
-    throw std::invalid_argument("PeriodicWorld::advance_to: " + std::to_string(t) +
-                                " is not a finite time from now on (" + std::to_string(now()) + ")");
+    throw std::invalid_argument("PeriodicWorld::advance_to: " + number_text(t) + " is not a finite time from now on (" +
+                                number_text(now()) + ")");
   }
   while (step(t)) {
   }

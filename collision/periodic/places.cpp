@@ -2,6 +2,7 @@
 #include "collision/periodic/periodic_world.hpp"
 #include "collision/shapes/shape.hpp"
 #include "kds/audit.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -72,8 +73,8 @@ void PeriodicWorld<Degree>::require_room(double radius) const {
     const double spare = (lattice_.period(axis) - 2 * radius) / 4;
     const double least = least_slack * std::max(std::abs(options_.min[axis]), std::abs(options_.max[axis]));
     const auto refuse = [&](const std::string& why) {
-      throw std::invalid_argument("shape: a bounding radius of " + std::to_string(radius) + " is " + why + " along " +
-                                  "xyz"[axis] + ", " + std::to_string(lattice_.period(axis)));
+      throw std::invalid_argument("shape: a bounding radius of " + number_text(radius) + " is " + why + " along " +
+                                  "xyz"[axis] + ", " + number_text(lattice_.period(axis)));
     };
     if (!(slack_in_radii * radius > least)) refuse("too small for the coordinates of a box of the period");
     if (!(spare > least)) refuse("not below half the period");

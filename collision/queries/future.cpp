@@ -6,9 +6,9 @@
 #include "collision/motion_range.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/queries/standing_body.hpp"
-#include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/edits/checked_pieces.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -24,8 +24,8 @@ using Eigen::Vector3d;
 template <class Motion>
 void require_span(const char* function, const BasicWorld<Motion>& world, double until) {
   if (until >= world.now() && until < never) return;
-  throw std::invalid_argument(std::string(function) + ": " + detail::number_text(until) +
-                              " is not a finite time from now on (" + detail::number_text(world.now()) + ")");
+  throw std::invalid_argument(std::string(function) + ": " + number_text(until) +
+                              " is not a finite time from now on (" + number_text(world.now()) + ")");
 }
 
 /// A box that moves with a shape and contains it in any orientation that it takes, with room for the margin within
@@ -118,7 +118,7 @@ void require_mover(const BasicWorld<Motion>& world, const PlacedShape& shape, co
   require_shape<Motion>(shape);
   if (!in_range(motion) || !(path_of(motion).start <= world.now())) {
     throw std::invalid_argument("next_contact: the motion is out of the range of shape.hpp, or begins after now (" +
-                                detail::number_text(world.now()) + ")");
+                                number_text(world.now()) + ")");
   }
   if constexpr (turns<Motion>) {
     require_no_spin(shape.shape, motion, "next_contact: motion");

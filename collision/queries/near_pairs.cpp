@@ -2,8 +2,8 @@
 
 #include "collision/broad_phase/kinetic_box.hpp"
 #include "collision/queries/standing_body.hpp"
-#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/shape.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -46,12 +46,12 @@ std::vector<NearPair> pairs_nearer_than(const BasicWorld<Motion>& world, double 
                                         const BodyFilter& filter) {
   const double now = world.now();
   if (!(distance > 0 && distance <= largest_magnitude)) {
-    throw std::invalid_argument("pairs_nearer_than: the distance " + detail::number_text(distance) +
+    throw std::invalid_argument("pairs_nearer_than: the distance " + number_text(distance) +
                                 " is not a positive number below 2^205");
   }
   if (!(until >= now && until < never)) {
-    throw std::invalid_argument("pairs_nearer_than: " + detail::number_text(until) +
-                                " is not a finite time from now on (" + detail::number_text(now) + ")");
+    throw std::invalid_argument("pairs_nearer_than: " + number_text(until) + " is not a finite time from now on (" +
+                                number_text(now) + ")");
   }
   std::vector<BodyId> bodies;
   double offset = 0;

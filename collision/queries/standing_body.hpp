@@ -7,6 +7,7 @@
 #include "collision/shapes/shape.hpp"
 #include "collision/shapes/shape_forms.hpp"
 #include "collision/world.hpp"
+#include "kds/number_text.hpp"
 
 #include <Eigen/Core>
 
@@ -36,7 +37,7 @@ template <class Motion>
 void require_entered(const char* function, const BasicWorld<Motion>& world, BodyId id) {
   if (entered(world, id)) return;
   throw std::invalid_argument(std::string(function) + ": body " + std::to_string(id) + " enters later, at " +
-                              std::to_string(path_of(world.motion(id)).start));
+                              number_text(path_of(world.motion(id)).start));
 }
 
 struct StandingBody {

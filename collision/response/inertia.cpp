@@ -1,8 +1,8 @@
 #include "collision/response/inertia.hpp"
 
-#include "collision/shapes/number_text.hpp"
 #include "kds/arithmetic/double_double.hpp"
 #include "kds/arithmetic/power_of_two.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -59,8 +59,8 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
   const double greatest = inertia.cwiseAbs().maxCoeff();
   if (!(greatest > 0)) refuse_tensor("must not be zero");
   if (!(greatest >= least_entry && greatest <= greatest_entry)) {
-    refuse_tensor("its greatest entry is " + detail::number_text(greatest) + "; from " +
-                  detail::power_text(least_entry) + " to " + detail::power_text(greatest_entry) + " is supported");
+    refuse_tensor("its greatest entry is " + number_text(greatest) + "; from " + power_text(least_entry) + " to " +
+                  power_text(greatest_entry) + " is supported");
   }
   const double unit = unit_of(inertia);
   Matrix3d m = unit * inertia;
@@ -68,8 +68,8 @@ Matrix3d checked_inertia(const Matrix3d& inertia) {
     for (Eigen::Index j = 0; j < i; ++j) {
       if (!(std::abs(m(i, j) - m(j, i)) <= inertia_tolerance)) {
         refuse_tensor("must be symmetric: entries (" + std::to_string(j) + ", " + std::to_string(i) + ") and (" +
-                      std::to_string(i) + ", " + std::to_string(j) + ") are " + detail::number_text(inertia(j, i)) +
-                      " and " + detail::number_text(inertia(i, j)));
+                      std::to_string(i) + ", " + std::to_string(j) + ") are " + number_text(inertia(j, i)) + " and " +
+                      number_text(inertia(i, j)));
       }
       m(i, j) = m(j, i) = (m(i, j) + m(j, i)) / 2;
     }

@@ -1,8 +1,8 @@
 #include "collision/shapes/half_space.hpp"
 
-#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/vectors.hpp"
+#include "kds/number_text.hpp"
 
 #include <cmath>
 #include <limits>
@@ -32,7 +32,7 @@ void ShapeKind<HalfSpace>::place(const HalfSpace& half_space, PlacedShape& place
     throw std::invalid_argument("normal: must be of unit length, to " + number_text(normal_tolerance));
   }
   if (!(std::abs(half_space.offset) <= largest_magnitude)) {
-    throw std::invalid_argument("offset: must be finite, and at most " + detail::power_text(largest_magnitude) +
+    throw std::invalid_argument("offset: must be finite, and at most " + power_text(largest_magnitude) +
                                 " in magnitude");
   }
   placed.low.setConstant(-infinity);

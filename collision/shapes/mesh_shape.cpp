@@ -1,7 +1,7 @@
 #include "collision/shapes/mesh_shape.hpp"
 
-#include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
+#include "kds/number_text.hpp"
 
 #include <cmath>
 

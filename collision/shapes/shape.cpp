@@ -1,8 +1,8 @@
 #include "collision/shapes/shape.hpp"
 
-#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
+#include "kds/number_text.hpp"
 
 #include <Eigen/LU>
 
@@ -13,8 +13,6 @@
 namespace kds::collision {
 namespace {
 
-using detail::number_text;
-using detail::power_text;
 using detail::rotation_margin;
 
 /// How far from 1 the norm of an orientation may be; scene files carry few digits. The quaternion is normalised.

@@ -4,7 +4,7 @@
 #include "collision/broad_phase/broad_phase.hpp"
 #include "collision/motions.hpp"
 #include "collision/profile.hpp"
-#include "collision/shapes/number_text.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -23,8 +23,8 @@ constexpr std::size_t small_part = 64;
 
 void require_ahead(const char* function, double t, double now) {
   if (t >= now && t != never) return;
-  throw std::invalid_argument(std::string(function) + ": " + detail::number_text(t) +
-                              " is not a finite time from now on (" + detail::number_text(now) + ")");
+  throw std::invalid_argument(std::string(function) + ": " + number_text(t) + " is not a finite time from now on (" +
+                              number_text(now) + ")");
 }
 
 /// Throws for a search up to the end of time, if events may go on until then.
@@ -297,8 +297,7 @@ bool Engine<Motion>::advance_for(double budget_seconds, double t) {
   guard_.require_idle("World::advance_for");
   require_ahead("World::advance_for", t, callers_.now);
   if (!(budget_seconds >= 0)) {
-    throw std::invalid_argument("World::advance_for: a budget of " + detail::number_text(budget_seconds) +
-                                " s is not >= 0");
+    throw std::invalid_argument("World::advance_for: a budget of " + number_text(budget_seconds) + " s is not >= 0");
   }
   const double longest = 1e9;  // s; what is counted in integers must not overflow
   const auto budget = std::chrono::duration<double>(std::min(budget_seconds, longest));

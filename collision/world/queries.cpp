@@ -2,7 +2,7 @@
 
 #include "collision/broad_phase/swept_box.hpp"
 #include "collision/motions.hpp"
-#include "collision/shapes/number_text.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <stdexcept>
@@ -117,8 +117,8 @@ void Queries<Motion>::visit_swept(const KineticBox<Motion::degree>& box, double 
     throw std::invalid_argument("World::visit_swept: the box is not finite");
   }
   if (!(until >= from && until < never)) {
-    throw std::invalid_argument("World::visit_swept: " + detail::number_text(until) +
-                                " is not a finite time from now on (" + detail::number_text(from) + ")");
+    throw std::invalid_argument("World::visit_swept: " + number_text(until) + " is not a finite time from now on (" +
+                                number_text(from) + ")");
   }
   const StaticBox swept = bounded_swept_box(box, from, until);
   const auto ask = [&](const auto& look) {

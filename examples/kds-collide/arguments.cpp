@@ -3,8 +3,8 @@
 #include "collision/broad_phase/broad_phase_kind.hpp"
 #include "collision/parallel/parallel_options.hpp"
 #include "examples/kds-collide/file_names.hpp"
-#include "io/number_text.hpp"
 #include "io/vtk.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <charconv>

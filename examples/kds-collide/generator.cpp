@@ -3,7 +3,7 @@
 #include "examples/kds-collide/model_meshes.hpp"
 #include "examples/kds-collide/placement.hpp"
 #include "io/body_table.hpp"
-#include "io/number_text.hpp"
+#include "kds/number_text.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -7,7 +7,6 @@
 #include "io/event_csv.hpp"
 #include "io/event_parts.hpp"
 #include "io/gltf.hpp"
-#include "io/number_text.hpp"
 #include "io/one_line.hpp"
 #include "io/output_file.hpp"
 #include "io/replay.hpp"
@@ -15,6 +14,7 @@
 #include "io/scene_reader.hpp"
 #include "io/stats_json.hpp"
 #include "io/vtk.hpp"
+#include "kds/number_text.hpp"
 
 #include <unistd.h>
 
@@ -112,7 +112,7 @@ class Simulation {
   std::string way_on() const {
     if (arguments_.checkpoint.empty()) return "there is no checkpoint to go on from: --checkpoint makes some";
     if (!saved_) return "there is no checkpoint yet to go on from";
-    return "--resume goes on from " + arguments_.checkpoint + ", at " + about(*saved_) + " s";
+    return "--resume goes on from " + arguments_.checkpoint + ", at " + rounded_text(*saved_) + " s";
   }
 
   /// `tell_way_on`: is given it at once, and whenever it has changed.

@@ -4,6 +4,7 @@
 #include "io/scene_file/json_document.hpp"
 #include "io/scene_file/number_rules.hpp"
 #include "io/scene_world.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,9 +26,9 @@ void check_inside_walls(const SceneBody& body, const Domain& domain, const Membe
     for (int d = 0; d < 3; ++d) {
       if (at[d] - domain.min[d] >= radius && domain.max[d] - at[d] >= radius) continue;
       throw JsonError(position_of(path, p), std::string("begins outside the reflecting walls: ") + "xyz"[d] + " = " +
-                                                number_text(at[d]) + " with a bounding radius of " + about(radius) +
-                                                ", between " + number_text(domain.min[d]) + " and " +
-                                                number_text(domain.max[d]));
+                                                number_text(at[d]) + " with a bounding radius of " +
+                                                rounded_text(radius) + ", between " + number_text(domain.min[d]) +
+                                                " and " + number_text(domain.max[d]));
     }
   }
 }
@@ -43,8 +44,9 @@ void check_range(const SceneBody& body, const Scene& scene, const MemberPath& pa
       const auto& c = piece.coefficients;
       const double largest = std::abs(c[0][d]) + elapsed * (std::abs(c[1][d]) + elapsed * std::abs(c[2][d]));
       if (largest <= largest_number) continue;
-      throw JsonError(position_of(path, p), "may reach a magnitude of " + about(largest) + " by t = " + about(end) +
-                                                "; at most " + number_text(largest_number) + " is supported");
+      throw JsonError(position_of(path, p), "may reach a magnitude of " + rounded_text(largest) +
+                                                " by t = " + rounded_text(end) + "; at most " +
+                                                number_text(largest_number) + " is supported");
     }
   }
 }

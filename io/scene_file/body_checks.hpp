@@ -1,8 +1,8 @@
 // What bodies of a scene must keep to, whichever kind of file they come from.
 #pragma once
 
-#include "io/number_text.hpp"
 #include "io/scene.hpp"
+#include "kds/number_text.hpp"
 
 #include <Eigen/Geometry>
 
@@ -20,7 +20,8 @@ using MemberPath = std::function<std::string(const std::string& member)>;
 template <class Fail>
 Eigen::Quaterniond unit_quaternion(const Eigen::Quaterniond& q, const Fail& fail) {
   const double norm = q.norm();
-  if (!(std::abs(norm - 1) <= orientation_tolerance)) fail("must be a unit quaternion; its norm is " + about(norm));
+  if (!(std::abs(norm - 1) <= orientation_tolerance))
+    fail("must be a unit quaternion; its norm is " + rounded_text(norm));
   return q.normalized();
 }
 

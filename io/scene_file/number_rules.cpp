@@ -1,6 +1,6 @@
 #include "io/scene_file/number_rules.hpp"
 
-#include "io/number_text.hpp"
+#include "kds/number_text.hpp"
 
 #include <cmath>
 

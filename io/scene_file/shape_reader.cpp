@@ -3,8 +3,8 @@
 #include "collision/response/mass_properties.hpp"
 #include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
-#include "io/number_text.hpp"
 #include "io/scene_file/body_checks.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -157,13 +157,13 @@ std::string mesh_size_problem(const kds::collision::MeshShape& shape, bool scale
   if (!(radius >= smallest_size && radius <= largest_number)) {
     const std::string limit =
         radius < smallest_size ? "at least " + number_text(smallest_size) : "at most " + number_text(largest_number);
-    return (scaled ? "makes the mesh reach " : "reaches ") + about(radius) + " from its origin; " + limit +
+    return (scaled ? "makes the mesh reach " : "reaches ") + rounded_text(radius) + " from its origin; " + limit +
            " is supported";
   }
   const double edge = shape.mesh->shortest_edge() * shape.scale;
   if (edge >= kds::collision::shortest_edge) return {};
-  return (scaled ? "makes an edge of the mesh " : "has an edge that is ") + about(edge) + " long; at least " +
-         about(kds::collision::shortest_edge) + " is supported";
+  return (scaled ? "makes an edge of the mesh " : "has an edge that is ") + rounded_text(edge) + " long; at least " +
+         rounded_text(kds::collision::shortest_edge) + " is supported";
 }
 
 Shape read_shape(const JsonNode& node, const Meshes& meshes) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/framework/snapshot.hpp"
+#include "kds/number_text.hpp"
 #include "kds/raised_flag.hpp"
 
 #include <algorithm>
@@ -87,9 +88,8 @@ class History {
   /// std::invalid_argument for a time after the clock, or before the first that is known.
   void roll_back(double t) {
     if (!(t <= simulator_.now()) || t < kept_.front().time) {
-      throw std::invalid_argument("History: " + std::to_string(t) + " is not between " +
-                                  std::to_string(kept_.front().time) + " and the clock at " +
-                                  std::to_string(simulator_.now()));
+      throw std::invalid_argument("History: " + number_text(t) + " is not between " + number_text(kept_.front().time) +
+                                  " and the clock at " + number_text(simulator_.now()));
     }
     replay([&](const Kept& kept) { return kept.time <= t; }, t, std::numeric_limits<std::uint64_t>::max());
     advance_to(t);

@@ -306,7 +306,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::count_repair(Slot slot, double time
   const std::uint64_t m = measures_.held + elements_.size();
   if (repairs_ > 1000 + m * m) {
     fail_use("slot " + std::to_string(slot) + ": repair() does not end: it has been called " +
-             std::to_string(repairs_ - 1) + " times at " + std::to_string(time));
+             std::to_string(repairs_ - 1) + " times at " + number_text(time));
   }
 }
 
@@ -394,3 +394,4 @@ void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double h
 #include "kds/framework/kinetic_edits.hpp"
 #include "kds/framework/kinetic_samples.hpp"
 #include "kds/framework/kinetic_standing.hpp"
+#include "kds/number_text.hpp"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "kds/framework/kinetic.hpp"
+#include "kds/number_text.hpp"
 
 #include <stdexcept>
 #include <string>
@@ -98,10 +99,10 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::process_own_due(double now) {
   require_ready();
   if (now < last_) {
-    fail_use("an edit at " + std::to_string(now) + " comes after a change at " + std::to_string(last_));
+    fail_use("an edit at " + number_text(now) + " comes after a change at " + number_text(last_));
   }
   if (next_time() < now) {
-    fail_use("an edit at " + std::to_string(now) + " would pass over an event at " + std::to_string(next_time()));
+    fail_use("an edit at " + number_text(now) + " would pass over an event at " + number_text(next_time()));
   }
   if constexpr (Sampled<Element> && !MovingSample<Element>) return;  // Such samples never fail.
   // Slots that are due for a sample can wait. They are put back also if a listener throws.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "kds/framework/kinetic.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -146,7 +147,7 @@ void Kinetic<Rule, Listener, Queue, Solver>::require_nothing_before(double now) 
     if (moves_at(place)) first = std::min(first, inner_at(place).next_time());
   });
   if (first < now) {
-    fail_use("what it stands on has passed over the event at " + std::to_string(first) +
+    fail_use("what it stands on has passed over the event at " + number_text(first) +
              ": all of them must be in one simulator");
   }
 }
@@ -155,8 +156,7 @@ template <class Rule, class Listener, EventQueue Queue, class Solver>
 void Kinetic<Rule, Listener, Queue, Solver>::require_inner_first(double time) const {
   detail::for_each_place<Rule>([&](auto place) {
     if (!moves_at(place) || inner_at(place).next_time() > time) return;
-    fail_use("an event at " + std::to_string(time) + " comes before that at " +
-             std::to_string(inner_at(place).next_time()) +
+    fail_use("an event at " + number_text(time) + " comes before that at " + number_text(inner_at(place).next_time()) +
              " of a structure that it stands on, which must stand before it in the simulator");
   });
 }

@@ -4,6 +4,7 @@
 #include "kds/framework/kinetic.hpp"
 #include "kds/framework/reverse.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "kds/number_text.hpp"
 #include "kds/simulator.hpp"
 #include "kds/testing/random.hpp"
 #include "kds/testing/random_motions.hpp"
@@ -238,7 +239,7 @@ class Trial {
     if (simulator.next_time() <= simulator.now()) return;
     ++findings_.states;
     const auto wrong = static_cast<std::uint64_t>(check_(tower.top().rule(), std::as_const(set_), simulator.now()));
-    if (wrong != 0) found("the state at " + std::to_string(simulator.now()) + " is wrong");
+    if (wrong != 0) found("the state at " + number_text(simulator.now()) + " is wrong");
     findings_.wrong += wrong - (wrong != 0);
   }
 

@@ -1,6 +1,7 @@
 // Failure times of bodies that turn: when a turning certificate first ceases to hold.
 #pragma once
 
+#include "kds/number_text.hpp"
 #include "kds/roots/failure_time.hpp"
 #include "kds/turning/turning_certificate.hpp"
 #include "kds/turning/turning_crossing.hpp"
@@ -63,7 +64,7 @@ namespace detail {
 
 inline void check_turning_horizon(double horizon) {
   if (!std::isfinite(horizon)) {
-    throw std::invalid_argument("failure_time of a turning certificate: the horizon is " + std::to_string(horizon) +
+    throw std::invalid_argument("failure_time of a turning certificate: the horizon is " + number_text(horizon) +
                                 ", and has to be finite");
   }
 }

@@ -1,5 +1,5 @@
 #include "io/event_csv.hpp"
-#include "io/number_text.hpp"
+#include "kds/number_text.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/random_numbers.hpp"
 

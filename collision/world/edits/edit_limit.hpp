@@ -1,7 +1,7 @@
 // A bound on the changes by callbacks while the clock hardly moves.
 #pragma once
 
-#include "collision/shapes/number_text.hpp"
+#include "kds/number_text.hpp"
 #include "kds/roots/failure_time.hpp"
 
 #include <cstdint>
@@ -22,9 +22,8 @@ class EditLimit {
       left_ = most;
     }
     if (left_ == 0) {
-      throw std::runtime_error("World: callbacks have changed bodies more often within " +
-                               detail::number_text(interval) + " s, at " + detail::number_text(now) +
-                               " s, than WorldOptions.most_edits allows");
+      throw std::runtime_error("World: callbacks have changed bodies more often within " + number_text(interval) +
+                               " s, at " + number_text(now) + " s, than WorldOptions.most_edits allows");
     }
     --left_;
   }

@@ -8,9 +8,9 @@
 #include "collision/response/mass_properties.hpp"
 #include "collision/response/principal_inertia.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/number_text.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/edits/checked_pieces.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -51,11 +51,11 @@ void validate(const BasicBodyDescription<Motion>& description) {
     if (description.inertia.moment() != 0) require_size(description.inertia.moment(), "inertia");
     if (description.inertia.tensor()) require_size(checked_inertia(*description.inertia.tensor())(0, 0), "inertia");
     if (!(description.friction >= 0 && description.friction <= largest_magnitude)) {
-      fail("friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
+      fail("friction: must be in [0, " + power_text(largest_magnitude) + "]");
     }
     if (!(std::abs(description.tangential_restitution) <= 1)) fail("tangential_restitution: must be in [-1, 1]");
     if (!(description.rolling_friction >= 0 && description.rolling_friction <= largest_magnitude)) {
-      fail("rolling_friction: must be in [0, " + detail::power_text(largest_magnitude) + "]");
+      fail("rolling_friction: must be in [0, " + power_text(largest_magnitude) + "]");
     }
   } else {
     const auto refuse = [&](const char* member) { fail(std::string(member) + ": bodies of this world do not turn"); };
@@ -191,8 +191,8 @@ BodyId Edits<Motion>::add_body(const Description& description) {
       }
       principal = principal_inertia(tensor);
       if (!(principal->moments.minCoeff() >= flattest_inertia * principal->moments.maxCoeff())) {
-        throw std::invalid_argument("inertia: its least moment must be at least " +
-                                    detail::power_text(flattest_inertia) + " of the greatest");
+        throw std::invalid_argument("inertia: its least moment must be at least " + power_text(flattest_inertia) +
+                                    " of the greatest");
       }
       for (std::size_t i = 0; i < description.motion.size(); ++i) {
         require_steady_clock(description.motion[i], clock_.now, "motion[" + std::to_string(i) + "]");

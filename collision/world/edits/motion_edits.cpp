@@ -2,9 +2,9 @@
 #include "collision/motion_range.hpp"
 #include "collision/motions.hpp"
 #include "collision/shapes/mesh_script.hpp"
-#include "collision/shapes/number_text.hpp"
 #include "collision/world/edits/checked_pieces.hpp"
 #include "collision/world/edits/edits.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -32,9 +32,8 @@ void Edits<Motion>::update_motion(BodyId id, std::span<const Motion> pieces) {
     refuse_motion(pieces[0], name);
   }
   if (path_of(pieces[0]).start > clock_.now) {
-    throw std::invalid_argument("World::update_motion: the motion starts at " +
-                                detail::number_text(path_of(pieces[0]).start) + ", after the clock at " +
-                                detail::number_text(clock_.now));
+    throw std::invalid_argument("World::update_motion: the motion starts at " + number_text(path_of(pieces[0]).start) +
+                                ", after the clock at " + number_text(clock_.now));
   }
   require_turns_for(slot, pieces, name);
   count();
@@ -57,8 +56,8 @@ void Edits<Motion>::append_motion(BodyId id, std::span<const Motion> pieces) {
   if (pieces.empty()) return;
   const double last = std::max(scripts_.last_start(slot), clock_.now);
   if (!(path_of(pieces[0]).start > last)) {
-    throw std::invalid_argument(std::string(name) + "[0].start: " + detail::number_text(path_of(pieces[0]).start) +
-                                " is not after the clock and the last piece, " + detail::number_text(last));
+    throw std::invalid_argument(std::string(name) + "[0].start: " + number_text(path_of(pieces[0]).start) +
+                                " is not after the clock and the last piece, " + number_text(last));
   }
   require_turns_for(slot, pieces, name);
   count();

@@ -1,8 +1,8 @@
 // How the properties of bodies are changed, and timers are set.
 #include "collision/motions.hpp"
-#include "collision/shapes/number_text.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/world/edits/edits.hpp"
+#include "kds/number_text.hpp"
 
 #include <cmath>
 #include <stdexcept>
@@ -94,8 +94,8 @@ template <class Motion>
 TimerId Edits<Motion>::set_timer(double t) {
   begin("World::set_timer");
   if (!(t >= clock_.now && t < never)) {
-    throw std::invalid_argument("World::set_timer: " + detail::number_text(t) + " is not a finite time from now on (" +
-                                detail::number_text(clock_.now) + ")");
+    throw std::invalid_argument("World::set_timer: " + number_text(t) + " is not a finite time from now on (" +
+                                number_text(clock_.now) + ")");
   }
   count(false);
   return timers_.set(t);

@@ -3,6 +3,7 @@
 #include "collision/queries/nearest.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <memory>
@@ -88,7 +89,7 @@ std::optional<Clearance> least_clearance(const Scene& scene, double most, double
   if (!(most > 0 && resolution > 0)) throw std::invalid_argument("least_clearance: most and resolution must be > 0");
   if (const auto meeting = first_meeting(scene)) {
     throw std::invalid_argument("least_clearance: not free, " + meeting->first + " and " + meeting->second +
-                                " meet at " + std::to_string(meeting->time) + " s");
+                                " meet at " + kds::number_text(meeting->time) + " s");
   }
   auto nearest = first_meeting(scene, most);
   if (!nearest) return std::nullopt;

@@ -175,7 +175,7 @@ TEST_CASE("To look for what never comes, or to run until nothing comes, changes 
     options.broad_phase = method;
     std::size_t met = 0;
     // A grid renews the boxes of bodies that fly apart to the end of time after each call, so few seeds take seconds.
-    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
       INFO("seed " << seed);
       Log log_plain, log_looked, log_run;
       World<1> plain(options, &log_plain), looked(options, &log_looked), run(options, &log_run);
@@ -210,7 +210,7 @@ TEST_CASE("To look for what never comes, or to run until nothing comes, changes 
       CHECK(log_run.times == log_plain.times);
       met += log_plain.times.size();
     }
-    CHECK(met > 40);
+    CHECK(met > 20);
   }
 }
 
@@ -233,8 +233,8 @@ TEST_CASE("A world that is changed before the clock of its simulator has to be b
   REQUIRE(world.now() == 0);
   for (World<1>* each : {&world, &alone}) each->update_motion(1, motion<1>({9, 0, 0}, {-4, 0, 0}));
   const std::string refused =
-      "Simulator: the clock stands at 2.000000, and structure 1 (in the order of the arguments, from 0) is due at "
-      "1.750000: it was changed at a time before the clock";
+      "Simulator: the clock stands at 2, and structure 1 (in the order of the arguments, from 0) is due at "
+      "1.75: it was changed at a time before the clock";
   CHECK_THROWS_WITH(simulator.step(), refused);
   CHECK_THROWS_WITH(simulator.step(9), refused);
   CHECK_THROWS_WITH(simulator.advance_to(9), refused);
@@ -260,9 +260,8 @@ TEST_CASE("A world that is ahead of the clock of its simulator is refused", "[wo
   CHECK_NOTHROW(simulator.advance_to(3));  // up to the clock is no further
   world.advance_to(5);
   const std::string refused =
-      "Simulator: the clock stands at 3.000000, and structure 0 (in the order of the arguments, from 0) was advanced "
-      "by "
-      "itself to 5.000000";
+      "Simulator: the clock stands at 3, and structure 0 (in the order of the arguments, from 0) was advanced "
+      "by itself to 5";
   CHECK_THROWS_WITH(simulator.step(), refused);
   CHECK_THROWS_WITH(simulator.advance_to(9), refused);
   CHECK(simulator.now() == 3);

@@ -179,7 +179,7 @@ TEMPLATE_TEST_CASE_SIG("meshes that turn meet when the definition says so", "[tu
   CAPTURE(Degree, seed);
   Random random(seed);
   int contacts = 0;
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < 20; ++round) {
     const auto some_mesh = [&]() -> std::shared_ptr<const Mesh> {
       if (random.one_in(3)) return samples::torus(4 + random.below(3), 3, 0.75, 0.2);
       if (random.one_in(2)) return samples::needle();
