@@ -58,11 +58,18 @@ ConvexCore::ConvexCore(const Shape& shape) {
   const auto of_hull = [&](const Polytope& polytope) {
     hull_ = polytope.points();
     structure_ = &polytope.structure();
+    normals_ = polytope.normals();
   };
   const auto of_others = [&](const auto&) {
     throw std::logic_error(std::string("ConvexCore: asked of a ") + kind_name(shape));
   };
   ask_form(shape, ByForm{of_box, of_hull, of_others});
+}
+
+Vector3d ConvexCore::normal(std::size_t face) const {
+  if (!normals_.empty()) return normals_[face];
+  const auto [a, b, c] = spanning_corners(structure_->faces[face]);
+  return unit_normal(own_[a], own_[b], own_[c]);
 }
 
 }  // namespace kds::collision

@@ -23,12 +23,14 @@ class ConvexCore {
   std::span<const Eigen::Vector3d> points() const { return hull_.empty() ? std::span(own_.data(), size_) : hull_; }
   const HullStructure& structure() const { return *structure_; }
   double radius() const { return radius_; }
+  /// The unit normal of a face that points out, known to some roundings.
+  Eigen::Vector3d normal(std::size_t face) const;
 
   /// Whether it has faces, that is, a volume of its own.
   bool solid() const { return !structure_->faces.empty(); }
 
  private:
-  std::span<const Eigen::Vector3d> hull_;
+  std::span<const Eigen::Vector3d> hull_, normals_;  ///< of a hull
   std::array<Eigen::Vector3d, 8> own_;
   std::size_t size_ = 0;
   const HullStructure* structure_ = nullptr;

@@ -59,7 +59,7 @@ Contact hull_contact(const TranslatingShape<Degree>& a, const TranslatingShape<D
   if (squared_norm(way) > 0) {
     contact.normal = normalized(Vector3d(-way));
   } else {
-    contact.normal = RoundedPolytope<Degree>(a, b, t, t, true).outmost(apart).normal;
+    contact.normal = RoundedPolytope<Degree>(a, b, t, t, true).outmost();
   }
   const SupportingFeature feature_a = supporting_feature(a.shape, contact.normal);
   const SupportingFeature feature_b = supporting_feature(b.shape, -contact.normal);

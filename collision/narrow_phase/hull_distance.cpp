@@ -37,8 +37,13 @@ bool nearest_inside(const std::array<Vector3d, 4>& p, std::size_t count, Vector3
   const double of_w = -dot(n, p[0]) / volume;
   const double of_u = -dot(cross(v, w), p[0]) / volume;
   const double of_v = -dot(cross(w, u), p[0]) / volume;
-  nearest = Vector3d::Zero();
   weights = {1 - (of_u + of_v + of_w), of_u, of_v, of_w};
+  // Of points that are in a plane but for roundings the weights are any numbers: then they make another point.
+  constexpr double rounding = 0x1p-40;
+  nearest = Vector3d::Zero();
+  double size = 0;
+  for (std::size_t i = 0; i < 4; ++i) nearest += weights[i] * p[i], size = std::max(size, squared_norm(p[i]));
+  if (squared_norm(nearest) <= rounding * rounding * size) nearest = Vector3d::Zero();
   return of_u > 0 && of_v > 0 && of_w > 0 && of_u + of_v + of_w < 1;
 }
 

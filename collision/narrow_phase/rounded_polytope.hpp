@@ -4,6 +4,7 @@
 #include "certificates/polytope_separation.hpp"
 #include "collision/degrees.hpp"
 #include "collision/narrow_phase/convex_core.hpp"
+#include "collision/narrow_phase/difference_planes.hpp"
 #include "collision/narrow_phase/gap_conditions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/narrow_phase/quick_distance.hpp"
@@ -30,11 +31,9 @@ namespace kds::collision {
 /// there is a radius, for each corner, edge and face of its surface the places that are between its sides and nearer
 /// than the radius to the point, line or plane that it spans.
 ///
-/// The planes of the difference are those of the faces of either, and those that an edge of each span, where they touch
-/// the difference. Which do need not be known exactly: a plane that touches it elsewhere, or only nearly should have
-/// been one of its faces, changes nothing, since its height is the greatest of all points. So all are taken that
-/// doubles cannot exclude, and edges that are exactly parallel are left out. For the parts of the surface it is the
-/// same: they are those that a corner, edge or face of a makes with an end, or with the segment, of b. Some are inside.
+/// Of the planes of the difference only those are made that the place of b comes near (DifferencePlanes). The parts of
+/// the surface are those that a corner, edge or face of a makes with an end, or with the segment, of b. Some are
+/// inside: which ones need not be known.
 ///
 /// The shapes are those that the matrices of their rotations make of the points given, taken as exact, and so are all
 /// signs. A filter in doubles decides most, as in RoundedZonotope.
@@ -49,8 +48,8 @@ class RoundedPolytope {
 
   class Piece;
 
-  /// With `all_planes` none are left out because the shapes are apart: for outmost().
-  RoundedPolytope(const Body& a, const Body& b, double now, double horizon, bool all_planes = false);
+  /// With `even_apart` planes are made even if the shapes are apart: for outmost().
+  RoundedPolytope(const Body& a, const Body& b, double now, double horizon, bool even_apart = false);
   RoundedPolytope(const RoundedPolytope&) = delete;  // refers to itself
   RoundedPolytope& operator=(const RoundedPolytope&) = delete;
 
@@ -60,37 +59,19 @@ class RoundedPolytope {
   template <class Visit>
   void earliest_pieces(double horizon, const Visit& visit) const;
 
-  /// The outward unit normal of the plane of the difference that a place is the farthest beyond, or the least deep
-  /// below, in doubles, and by how much. Precondition: all planes are there.
-  struct Outmost {
-    Eigen::Vector3d normal;
-    double height;
-  };
-  Outmost outmost(const Eigen::Vector3d& place) const;
+  /// The outward unit normal of the plane of the difference that the place of b is the farthest beyond now, or the
+  /// least deep below, in doubles. Precondition: made with `even_apart`.
+  Eigen::Vector3d outmost() const { return planes_.outmost(0).normal; }
 
  private:
   using Along = typename Quick::Along;
 
-  /// A range of entries of points_.
-  struct Points {
-    std::uint32_t begin, end;
-  };
-  struct Plane {
-    std::array<certificates::DifferenceEdge, 2> edges;
-    std::array<Points, 2> farthest;
-    Eigen::Vector3d normal;  ///< unit, up to some roundings
-    bool known;              ///< it is that
-    Along along;
-    double height;
-  };
+  using Plane = typename DifferencePlanes<Degree>::Plane;
 
   TimeWindow after_end() const { return {motion_.end(), motion_.end()}; }
   bool near(const Along& along, double side, double within);
-  void add_planes();
-  template <class Farthest>
-  bool add_plane(const std::array<certificates::DifferenceEdge, 2>& edges, const Farthest& farthest);
-  Points one_point(std::uint32_t i);
-  Points farthest_points(const ConvexCore& core, std::span<const Eigen::Vector3d> places, const Eigen::Vector3d& along);
+  bool near(const Plane& plane) { return !plane.known || near(plane.along, 1, plane.height + radius_); }
+  void find_first_planes();
   template <class Visit>
   void every_part(const Visit& visit) const;
 
@@ -102,11 +83,10 @@ class RoundedPolytope {
   double radius_;
   Quick motion_;
   std::array<Along, 3> coordinates_;
-  std::vector<std::uint32_t> points_;
-  std::vector<Plane> planes_;
-  TimeWindow window_;  ///< in which b's place may be near at all
+  mutable DifferencePlanes<Degree> planes_;  ///< which grow, as they are needed
+  TimeWindow window_;                        ///< in which b's place may be near at all
   bool apart_ = false;
-  bool all_planes_;
+  bool even_apart_;
 };
 
 /// One convex piece. All functions are exact.
@@ -127,13 +107,14 @@ class RoundedPolytope<Degree>::Piece {
   // ---- For gap_conditions.hpp: the gaps of the planes of the difference, or of the sides of a part and the last one
   // its distance.
 
-  std::size_t size() const { return solid_ ? pair_->planes_.size() : sides_.size() + 1; }
+  std::size_t size() const { return solid_ ? pair_->planes_.found().size() : sides_.size() + 1; }
   bool surely_closed(std::size_t i, double t) const;
   double closed_until(std::size_t i, double t) const;
   double opened_by(std::size_t i) const;
   double failure_time(std::size_t i, double t, double horizon) const;
   double recovery_time(std::size_t i, double t, double horizon) const;
   bool closed(std::size_t i, double t) const;
+  bool find_more(double from, double until) const { return solid_ && pair_->planes_.find_more(from, until); }
 
  private:
   friend RoundedPolytope;
