@@ -43,9 +43,9 @@ const SolidIntegrals& solid_in(const char* kind, const Mesh& mesh) {
   return sum;
 }
 
-/// What is not told from zero is zero, as the products of inertia of what is symmetric up to roundings of the sums: then
-/// a body that turns about an axis of symmetry keeps it exactly, and the signs of what is parallel to it are those of
-/// zero.
+/// What is not told from zero is zero, as the products of inertia of what is symmetric up to roundings of the sums:
+/// then a body that turns about an axis of symmetry keeps it exactly, and the signs of what is parallel to it are those
+/// of zero.
 MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, std::size_t triangles, double scale,
                             double mass) {
   const double error = 12 * sum.error(triangles) / sum.volume.high;  // as above, of the tensor in its unit
@@ -108,7 +108,8 @@ MassProperties of_parts(const Compound& whole, double mass) {
   DoubleDouble volume{};
   for (const SolidPart& solid : solids) volume = volume + solid.volume;
   const auto parts = of_each_part([&](std::size_t i) {
-    return of_integrals(solids[i].kind, solids[i].integrals, solids[i].triangles, 1, mass * (solids[i].volume / volume.high));
+    return of_integrals(solids[i].kind, solids[i].integrals, solids[i].triangles, 1,
+                        mass * (solids[i].volume / volume.high));
   });
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   for (Eigen::Index d = 0; d < 3; ++d) {

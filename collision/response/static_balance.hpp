@@ -26,8 +26,8 @@ struct Foothold {
   Eigen::Vector3d arm_a, arm_b;  ///< from the centre of mass to the point; of a fixed body unused
   Eigen::Vector3d normal;        ///< unit, from a to b
   double friction = 0;           ///< the force across the normal over that along it, at most
-  /// Unit, across the normal, if the two slide on each other: the way in which a pulls b, with all of the friction. Zero
-  /// if they do not.
+  /// Unit, across the normal, if the two slide on each other: the way in which a pulls b, with all of the friction.
+  /// Zero if they do not.
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();
 };
 

@@ -11,8 +11,8 @@ namespace kds {
 /// A double, and whether it is exactly what it stands for. What is made of it by + - * is exact while no operation
 /// rounds, and where an exact zero is a factor, whatever the other is. So it tells at a tenth of the cost of Exact, and
 /// less, that a sum of products is zero, where that follows from factors that are zero and from short numbers: as of
-/// boxes along the axes that lie on each other. And it tells that a b - b a is zero, whatever digits a and b have, as in
-/// the product of two parallel vectors.
+/// boxes along the axes that lie on each other. And it tells that a b - b a is zero, whatever digits a and b have, as
+/// in the product of two parallel vectors.
 class PlainNumber {
  public:
   PlainNumber() = default;

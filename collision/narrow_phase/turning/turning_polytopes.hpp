@@ -412,7 +412,8 @@ std::vector<Eigen::Vector3d> TurningPolytopes<Degree>::steady_directions(const R
       if (motion.spin().still()) return true;
       if (norm(cross(along, axis)) > maybe_parallel) return false;
       const auto [from, to] = polytope.edge(e);
-      return kds::detail::is_known_zero(certificates::cross(spin, turner.at_start(certificates::difference_of<PlainNumber>(from, to))));
+      return kds::detail::is_known_zero(
+          certificates::cross(spin, turner.at_start(certificates::difference_of<PlainNumber>(from, to))));
     };
     steady.push_back(keeps_direction() ? along : Eigen::Vector3d(Eigen::Vector3d::Zero()));
   }
