@@ -38,7 +38,7 @@ class Rotation {
     const double square = w_ * w_ + squared_norm(v_);
     scale_ = 2 / square;
     if (!in_range(square)) error_ = std::numeric_limits<double>::infinity();
-    if (!spin.still()) turn(spin, rate, t);
+    if (!spin.still() && t != spin.start) turn(spin, rate, t);
   }
 
   /// Where b points to.

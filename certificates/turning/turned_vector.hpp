@@ -27,9 +27,15 @@ template <class Number>
 Number dot(const VectorOf<Number>& a, const VectorOf<Number>& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
+/// a b - c d.
+template <class Number>
+Number difference_of_products(const Number& a, const Number& b, const Number& c, const Number& d) {
+  return a * b - c * d;
+}
 template <class Number>
 VectorOf<Number> cross(const VectorOf<Number>& a, const VectorOf<Number>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+  return {difference_of_products(a[1], b[2], a[2], b[1]), difference_of_products(a[2], b[0], a[0], b[2]),
+          difference_of_products(a[0], b[1], a[1], b[0])};
 }
 template <class Number>
 VectorOf<Number> operator*(const VectorOf<Number>& a, const Number& factor) {

@@ -7,6 +7,7 @@
 #include "collision/shapes/solid_integrals.hpp"
 #include "collision/vectors.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <stdexcept>
@@ -42,13 +43,19 @@ const SolidIntegrals& solid_in(const char* kind, const Mesh& mesh) {
   return sum;
 }
 
-MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, double scale, double mass) {
+/// What is not told from zero is zero, as the products of inertia of what is symmetric up to roundings of the sums:
+/// then a body that turns about an axis of symmetry keeps it exactly, and the signs of what is parallel to it are those
+/// of zero.
+MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, std::size_t triangles, double scale,
+                            double mass) {
+  const double error = 12 * sum.error(triangles) / sum.volume.high;  // as above, of the tensor in its unit
+  const auto told = [error](DoubleDouble x) { return std::abs(x.high) > error ? x : DoubleDouble{}; };
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   PreciseVector centre, mean_square;
   for (std::size_t d = 0; d < 3; ++d) {
     centre[d] = sum.first[d] / (sum.volume * 4.0);
-    const DoubleDouble place = (centre[d] * sum.unit + sum.origin[static_cast<Eigen::Index>(d)]) * scale;
-    result.centre[static_cast<Eigen::Index>(d)] = place.high;
+    const double origin = sum.origin[static_cast<Eigen::Index>(d)];
+    result.centre[static_cast<Eigen::Index>(d)] = (told(centre[d] + origin / sum.unit) * (sum.unit * scale)).high;
   }
   const DoubleDouble twenty = sum.volume * 20.0;
   for (std::size_t d = 0; d < 3; ++d) mean_square[d] = sum.squares[d] / twenty - centre[d] * centre[d];
@@ -58,7 +65,7 @@ MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, double 
     const std::size_t e = (d + 1) % 3, f = (d + 2) % 3;
     const auto i = static_cast<Eigen::Index>(d), j = static_cast<Eigen::Index>(e), k = static_cast<Eigen::Index>(f);
     result.inertia(i, i) = whole * (mean_square[e] + mean_square[f]).high;
-    const DoubleDouble product = sum.products[d] / twenty - centre[e] * centre[f];
+    const DoubleDouble product = told(sum.products[d] / twenty - centre[e] * centre[f]);
     result.inertia(j, k) = result.inertia(k, j) = -(whole * product.high);
   }
   Matrix3d certain = result.inertia;
@@ -73,13 +80,15 @@ MassProperties of_integrals(const char* kind, const SolidIntegrals& sum, double 
 struct SolidPart {
   const char* kind;
   SolidIntegrals integrals;
+  std::size_t triangles;
   double volume;
 };
 
 SolidPart solid_part(const Shape& shape) {
   const char* const kind = kind_name(shape);
-  const SolidIntegrals& sum = solid_in(kind, *triangles_of(shape));
-  return {kind, sum, (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
+  const Mesh& mesh = *triangles_of(shape);
+  const SolidIntegrals& sum = solid_in(kind, mesh);
+  return {kind, sum, mesh.triangles().size(), (sum.volume / 6.0).high * sum.unit * sum.unit * sum.unit};
 }
 
 /// Parts of one density, by the theorem of parallel axes. What cancels where parts are about each other, the sum of
@@ -99,7 +108,8 @@ MassProperties of_parts(const Compound& whole, double mass) {
   DoubleDouble volume{};
   for (const SolidPart& solid : solids) volume = volume + solid.volume;
   const auto parts = of_each_part([&](std::size_t i) {
-    return of_integrals(solids[i].kind, solids[i].integrals, 1, mass * (solids[i].volume / volume.high));
+    return of_integrals(solids[i].kind, solids[i].integrals, solids[i].triangles, 1,
+                        mass * (solids[i].volume / volume.high));
   });
   MassProperties result{mass, Vector3d::Zero(), Matrix3d::Zero()};
   for (Eigen::Index d = 0; d < 3; ++d) {
@@ -132,7 +142,8 @@ MassProperties mass_properties(const Shape& shape, double mass) {
       throw std::invalid_argument("mass_properties: a half-space has no mass");
     } else {
       const MeshShape surface = surface_of(shape);
-      return of_integrals(kind.name, solid_in(kind.name, *surface.mesh), surface.scale, mass);
+      const SolidIntegrals& sum = solid_in(kind.name, *surface.mesh);
+      return of_integrals(kind.name, sum, surface.mesh->triangles().size(), surface.scale, mass);
     }
   });
 }

@@ -108,7 +108,7 @@ double angle_between(const Quaterniond& a, const Quaterniond& b) {
   return 2 * arc_tangent(norm(Vector3d(turn.x(), turn.y(), turn.z())) / std::abs(turn.w()));
 }
 
-TopPieces::TopPieces(const RotationState& state, const FreeRotation& rotation, double error)
+TopSpans::TopSpans(const RotationState& state, const FreeRotation& rotation, double error)
     : state_(state),
       spins_(rotation.top_spins()),
       rate_(norm(rotation.angular_velocity())),
@@ -119,26 +119,30 @@ TopPieces::TopPieces(const RotationState& state, const FreeRotation& rotation, d
   const double cosine = std::max(0.0, 1 - half_angle * half_angle / 2);
   span_ = (1 - 0x1p-12) * longest(limits.bulge + limits.lean * cosine);
   leading_span_ = longest(while_led_back(error).bulge);
-  leaning_ = leaning(state.orientation, rotation.acceleration(state.time), limits.lean);
-  const double end = state.time + span_;
-  angular_velocity_ = rate_between(leaning_, spins_.carried(leaning_, end), end - state.time);
 }
 
-double TopPieces::longest(double bulge) const {
+TopPieces::TopPieces(const TopSpans& spans, const FreeRotation& rotation, double error)
+    : TopSpans(spans),
+      leaning_(leaning(state_.orientation, rotation.acceleration(state_.time), while_leaning(error).lean)) {
+  const double end = state_.time + span_;
+  angular_velocity_ = rate_between(leaning_, spins_.carried(leaning_, end), end - state_.time);
+}
+
+double TopSpans::longest(double bulge) const {
   return std::min(span_for(bulge, acceleration_, rate_), longest_turn / rate_);
 }
-bool TopPieces::equal_to(double part, double t) const {
+bool TopSpans::equal_to(double part, double t) const {
   return span_ > part * std::max(std::abs(t), std::abs(state_.time));
 }
 /// The bulge of the first one is that of pieces that lead away, or less.
-double TopPieces::end(double number) const {
+double TopSpans::end(double number) const {
   const double first = std::min(2 * leading_span_, span_);
   return number > 0 ? state_.time + (first + (number - 1) * span_) : state_.time;
 }
-double TopPieces::number_at(double t) const { return std::max(0.0, 1 + std::round((t - end(1)) / span_)); }
-bool TopPieces::ends_at(double t) const { return t == state_.time || (equal_near(t) && end(number_at(t)) == t); }
+double TopSpans::number_at(double t) const { return std::max(0.0, 1 + std::round((t - end(1)) / span_)); }
+bool TopSpans::ends_at(double t) const { return t == state_.time || (equal_near(t) && end(number_at(t)) == t); }
 
-RotationPiece TopPieces::leading(const Quaterniond& from) const {
+RotationPiece TopSpans::leading(const Quaterniond& from) const {
   const double t = state_.time, end = std::max(t + leading_span_, next_up(t));
   check_clock(longest_turn / rate_, t, end);
   const Quaterniond to = free(end);
@@ -178,7 +182,7 @@ RotationPiece leading_piece(const PrincipalInertia& inertia, const RotationState
     const Quaterniond to = rotation.orientation(end);
     return {end, from, rate_between(from, to, end - t), to, to};
   }
-  if (inertia.symmetry >= 0) return TopPieces(state, rotation, error).leading(from);
+  if (inertia.symmetry >= 0) return TopSpans(state, rotation, error).leading(from);
   return expanded_piece(rotation, t, velocity, from, while_led_back(error));
 }
 
@@ -190,18 +194,23 @@ PiecesInARow top_pieces_until(double t, const PrincipalInertia& inertia, Rotatio
   PiecesInARow row{.last = before, .start = start, .count = 0};
   for (;; row.start = row.last.end) {
     if (!(known && known->are_of(state) && known->ends_at(row.start))) {
-      const FreeRotation rotation(inertia, state);
       known.reset();
-      if (!rotation.steady()) known.emplace(state, rotation, error);
-      if (row.start != state.time && !(known && known->ends_at(row.start))) {
+      std::optional<TopSpans> spans;
+      const auto steady_from = [&](const FreeRotation& rotation) {
+        return PiecesInARow{{never, row.last.to, rotation.angular_velocity(), row.last.to}, row.start, row.count + 1};
+      };
+      const FreeRotation rotation(inertia, state);
+      if (!rotation.steady()) spans.emplace(state, rotation, error);
+      if (row.start != state.time && !(spans && spans->ends_at(row.start))) {
         // The state is that at the start from now on.
-        state = {state.momentum, known ? known->free(row.start) : rotation.orientation(row.start), row.start};
+        state = {state.momentum, spans ? spans->free(row.start) : rotation.orientation(row.start), row.start};
         const FreeRotation anew(inertia, state);
-        known.reset();
-        if (!anew.steady()) known.emplace(state, anew, error);
-        if (!known) return {{never, row.last.to, anew.angular_velocity(), row.last.to}, row.start, row.count + 1};
-      } else if (!known) {
-        return {{never, row.last.to, rotation.angular_velocity(), row.last.to}, row.start, row.count + 1};
+        if (anew.steady()) return steady_from(anew);
+        known.emplace(TopSpans(state, anew, error), anew, error);
+      } else if (spans) {
+        known.emplace(*spans, rotation, error);
+      } else {
+        return steady_from(rotation);
       }
     }
     const bool equal = known->equal_near(row.start);

@@ -53,12 +53,13 @@ RotationPiece leading_piece(const PrincipalInertia& inertia, const RotationState
 
 /// The pieces of a symmetric top that does not turn about a principal axis. Seen from where its angular momentum and
 /// velocity stay as they are, they are all the same but for the first, which begins in the orientation of the state:
-/// each lasts equally long, and turns about the same axis at the same rate. What that needs is calculated once for a
-/// state.
-class TopPieces {
+/// each lasts equally long, and turns about the same axis at the same rate. These are their times, and the piece that
+/// leads to the free rotation. After most contacts nothing more is asked of a state: when that piece ends, another
+/// state takes its place.
+class TopSpans {
  public:
   /// The rotation is that from the state on, and not steady.
-  TopPieces(const RotationState& state, const FreeRotation& rotation, double error);
+  TopSpans(const RotationState& state, const FreeRotation& rotation, double error);
   bool are_of(const RotationState& state) const { return state_ == state; }
 
   /// Whether roundings of the clock change the spans of pieces near t by less than 2^-15 of them.
@@ -69,15 +70,12 @@ class TopPieces {
   double number_at(double t) const;
   double end(double number) const;
 
-  /// The piece that starts at t, at which one ends, or at the time of the state. Precondition: spans are equal near t.
-  /// `to` is left out.
-  RotationPiece piece(double t) const;
   /// The one that starts at the time of the state in another orientation.
   RotationPiece leading(const Eigen::Quaterniond& from) const;
   /// The free rotation at t.
   Eigen::Quaterniond free(double t) const { return spins_.carried(state_.orientation, t); }
 
- private:
+ protected:
   bool equal_to(double part, double t) const;
   double longest(double bulge) const;
 
@@ -85,6 +83,19 @@ class TopPieces {
   TopSpins spins_;
   double rate_, acceleration_;  ///< magnitudes
   double span_ = 0, leading_span_;
+};
+
+/// The pieces themselves: what they need is calculated once for a state.
+class TopPieces : public TopSpans {
+ public:
+  /// `rotation` and `error` are those of the spans.
+  TopPieces(const TopSpans& spans, const FreeRotation& rotation, double error);
+
+  /// The piece that starts at t, at which one ends, or at the time of the state. Precondition: spans are equal near t.
+  /// `to` is left out.
+  RotationPiece piece(double t) const;
+
+ private:
   Eigen::Quaterniond leaning_;        ///< at the time of the state
   Eigen::Vector3d angular_velocity_;  ///< of the piece that begins then
 };

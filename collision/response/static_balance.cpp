@@ -116,6 +116,10 @@ class Descent {
 
   /// The nearest force that the foothold can give.
   static Vector3d in_cone(const Vector3d& force, const Foothold& at) {
+    if (!at.pull.isZero(0)) {
+      const Vector3d along = at.normal + at.friction * at.pull;
+      return std::max(0.0, certificates::dot(force, along) / squared_norm(along)) * along;
+    }
     const double along = certificates::dot(at.normal, force);
     const Vector3d across = force - along * at.normal;
     const double sideways = norm(across);

@@ -26,10 +26,13 @@ struct Foothold {
   Eigen::Vector3d arm_a, arm_b;  ///< from the centre of mass to the point; of a fixed body unused
   Eigen::Vector3d normal;        ///< unit, from a to b
   double friction = 0;           ///< the force across the normal over that along it, at most
+  /// Unit, across the normal, if the two slide on each other: the way in which a pulls b, with all of the friction.
+  /// Zero if they do not.
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
 };
 
 /// Whether there are forces, each within the cone of friction of its foothold, that hold all bodies: that add up to the
-/// opposite of their weights, and have no torque.
+/// opposite of their weights, and have no torque. Where two slide on each other the force is in one direction alone.
 ///
 /// Accelerated gradient descent [Nesterov83] on the sum of the squares of what is not balanced: each force takes a step
 /// against the acceleration that is left at its point, and is projected on its cone, which is the circular one. What is

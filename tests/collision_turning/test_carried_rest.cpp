@@ -294,6 +294,58 @@ TEST_CASE("what a belt carries wakes at a wall, and where another comes to lie",
   CHECK(log.passed == 0);
 }
 
+TEST_CASE("crates that a belt presses against a stop rest there, and the belt slides on below them", "[rest]") {
+  const Body belt = moving(fixed(HalfSpace{Vector3d::UnitZ(), 0}, Vector3d::Zero()), {0.5, 0, 0});
+  std::vector<std::string> expected;
+  for (const auto& [kind, saves] : {std::pair(BroadPhaseKind::automatic, false),
+                                    {BroadPhaseKind::automatic, true},
+                                    {BroadPhaseKind::all_pairs, false}}) {
+    CAPTURE(static_cast<int>(kind), saves);
+    Log log;
+    auto world = std::make_unique<Turning>(options(kind), &log);
+    world->add_body(belt);
+    const BodyId stop = world->add_body(fixed(Box{Vector3d(0.25, 2, 2)}, {2, 0, 1}));
+    for (const double x : {1.25, 0.5}) {
+      world->add_body(moving(body(Box{Vector3d(0.25, 0.2, 0.15)}, {x, 0.02 * x, 0.16}), {0.5, 0, 0}));
+    }
+    take_steps(world, log, kind, 0.125, saves);
+    for (BodyId i = 2; i <= 3; ++i) CHECK((world->resting(0, i) && still(*world, i)));
+    CHECK(world->resting(stop, 2));
+    CHECK(world->resting(2, 3));
+    CHECK(std::abs(place(*world, 3)[0] - 1) < 6 * holding_distance);
+    CHECK(log.passed == 0);
+    const int contacts = log.contacts;
+    world->advance_to(1000);
+    world->audit();
+    CHECK(log.contacts == contacts);
+    if (expected.empty()) expected = log.lines;
+    CHECK(log.lines == expected);
+    // The other way it draws them along.
+    RigidMotion<2> back = world->motion(0).restarted(1000);
+    back.path.coefficients[1] = {-0.5, 0, 0};
+    world->update_motion(0, back);
+    world->advance_to(1001);
+    CHECK(place(*world, 2)[0] < 1.25);
+  }
+}
+
+TEST_CASE("on a half-space that does not slide exactly along itself, or holds alone, nothing rests at a stop",
+          "[rest]") {
+  for (const auto& [rising, friction] : {std::pair(1e-9, 0.5), {0.0, 0.0}}) {
+    CAPTURE(rising, friction);
+    Log log;
+    Turning world(options(), &log);
+    world.add_body(moving(fixed(HalfSpace{Vector3d::UnitZ(), 0}, Vector3d::Zero()), {0.5, 0, rising}));
+    world.add_body(fixed(Box{Vector3d(0.25, 2, 2)}, {0.75, 0, 1}));
+    Body crate = moving(body(Box{Vector3d(0.25, 0.2, 0.15)}, {0.2, 0, 0.16}), {0.5, 0, 0});
+    crate.friction = friction;
+    const BodyId id = world.add_body(crate);
+    world.advance_to(0.6);
+    CHECK_FALSE(world.resting(1, id));
+    CHECK_FALSE(still(world, id));
+  }
+}
+
 TEST_CASE("boxes thrown on a gliding floor come to rest on it, at any velocity", "[rest]") {
   int at_rest = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {

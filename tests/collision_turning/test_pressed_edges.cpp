@@ -78,6 +78,24 @@ TEST_CASE("the gap of two edges that cross closes with the acceleration that is 
   }
 }
 
+TEST_CASE("the gap of a side and an end opens with the acceleration that is calculated", "[turning]") {
+  Random random(6);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const Line side{random_vector(random), random_vector(random), random_vector(random), 3 * random_vector(random)};
+    const Vector3d n = side.along.cross(random_vector(random)).normalized(), speed = random_vector(random);
+    const double radii = random.between(0.25, 1);
+    const auto distance = [&](double t) {
+      const Vector3d way = side.point + radii * n + t * speed - side.point_at(t), along = side.along_at(t).normalized();
+      return (way - way.dot(along) * along).norm();
+    };
+    const double h = 1e-4;
+    const double measured = (distance(h) - 2 * distance(0) + distance(-h)) / (h * h);
+    const double calculated = opens_at_side(side.along, side.turns, speed - side.velocity, n, radii);
+    CHECK(calculated == Approx(measured).epsilon(1e-3).margin(1e-3));
+  }
+}
+
 TEST_CASE("edges of boxes, hulls, meshes and capsules are where their features say", "[turning]") {
   const Shape box = Box{Vector3d(1, 2, 3)};
   for (std::uint32_t d = 0; d < 3; ++d) {

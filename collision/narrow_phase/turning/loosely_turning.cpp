@@ -47,8 +47,8 @@ double apart_until(const PlacedShape& shape_a, const LooselyTurning<Degree>& a, 
   with_outer_points(shape_a, [&](const auto& of_a) {
     with_outer_points(shape_b, [&](const auto& of_b) {
       const NodeUnits units_a = of_a.units(), units_b = of_b.units();
-      const PairRates rates(a.motion, b.motion);
-      const NodesView<Degree> view(a.motion, b.motion, rates, units_a, units_b, t, never);
+      const PairRates not_needed{};  // since the motions start then
+      const NodesView<Degree> view(a.motion, b.motion, not_needed, units_a, units_b, t, never);
       const double s = view.ahead;
       if (!view.certain || !(s > 0 && s < never)) return;
       LooseTurns loose;

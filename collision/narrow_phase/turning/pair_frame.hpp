@@ -20,6 +20,7 @@ namespace kds::collision {
 
 /// The rates of two spins, of which frames at many times can be made.
 struct PairRates {
+  PairRates() = default;
   template <int Degree>
   PairRates(const certificates::RigidMotion<Degree>& of_a, const certificates::RigidMotion<Degree>& of_b)
       : a(of_a.spin().rate()), b(of_b.spin().rate()) {}

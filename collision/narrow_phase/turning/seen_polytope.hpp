@@ -47,9 +47,10 @@ class TurningPolytope {
     return normals_;
   }
 
+  /// Three of its corners, in their order. Of quadrangles both vectors from the first one are sides.
   std::array<Eigen::Vector3d, 3> face(std::size_t f) const {
     const auto [a, b, c] = spanning_corners(structure->faces[f]);
-    return {points[a], points[b], points[c]};
+    return {points[b], points[c], points[a]};
   }
   std::array<Eigen::Vector3d, 2> edge(std::size_t e) const {
     return {points[structure->edges[e].ends[0]], points[structure->edges[e].ends[1]]};

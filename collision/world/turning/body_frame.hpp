@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace kds::collision::turning_rest {
@@ -42,6 +43,18 @@ class BodyFrame {
   Quaterniond turn_;
   double length_;
 };
+
+/// Where a place at which two bodies have touched is by now, seen from that one of the two that does not slide away.
+template <class Place>
+Vector3d point_of(const Place& place, const BodyFrame& a, const BodyFrame& b, bool a_slides_away) {
+  return a_slides_away ? b.out(place.on_b) : a.out(place.on_a);
+}
+/// How far apart the two are there. If one slides along itself below the other, along the normal.
+template <class Place>
+double apart(const Place& place, const BodyFrame& a, const BodyFrame& b, bool slides) {
+  const Vector3d way = b.out(place.on_b) - a.out(place.on_a);
+  return slides ? std::abs(dot(way, place.normal)) : norm(way);
+}
 
 /// How far a point of a box, a capsule or a hull is at most from an axis through its centre: unit, in the axes of the
 /// body. Nothing of other shapes, or of a ball, that may be null.

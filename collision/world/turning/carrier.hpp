@@ -1,7 +1,9 @@
 // How a fixed body moves that carries what rests on it.
 #pragma once
 
+#include "collision/shapes/shape.hpp"
 #include "collision/world/image_tools.hpp"
+#include "kds/arithmetic/exact.hpp"
 
 #include <Eigen/Core>
 
@@ -49,6 +51,21 @@ template <class Motion>
 bool moves_with(const Motion& motion, const Carrier& carrier) {
   const auto of_body = carrier_of(motion);
   return of_body && *of_body == carrier;
+}
+
+/// The velocity with which a half-space slides along itself, seen from a carrier; nothing if it does not do so exactly.
+/// What is carried keeps its height above it for good, and slides on it in that direction alone.
+template <class Motion>
+std::optional<Eigen::Vector3d> slides_under(const Carrier& carrier, const HalfSpace& plane, const Motion& motion) {
+  const auto own = carrier_of(motion);
+  if (!own || own->accelerates() || carrier.accelerates() || *own == carrier) return std::nullopt;
+  const Eigen::Vector3d velocity = own->velocity - carrier.velocity;
+  Exact across;  // of which the rounded velocity may not tell
+  for (int d = 0; d < 3; ++d) {
+    across = across + Exact(plane.normal[d]) * (Exact(own->velocity[d]) - Exact(carrier.velocity[d]));
+  }
+  if (across.sign() != 0) return std::nullopt;
+  return velocity;
 }
 
 /// From a time on a body is carried. Its place is rounded.

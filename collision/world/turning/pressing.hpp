@@ -37,6 +37,26 @@ inline std::optional<ContactEdge> contact_edge(const Shape& shape, const Feature
   return edge;
 }
 
+/// The radius of the round end of a capsule, 0 of a corner; none where the feature is neither.
+inline std::optional<double> contact_end(const Shape& shape, const Feature& feature) {
+  if (feature.kind != Feature::Kind::vertex) return std::nullopt;
+  const auto* const capsule = std::get_if<Capsule>(&shape);
+  return capsule ? capsule->radius : 0.0;
+}
+
+/// By how much faster than n . x'', of places on the axis of a side and at the centre of an end that touches it, their
+/// gap opens, since the normal turns with both.
+///
+/// Let u be the direction of the axis, v the velocity of the end's centre seen from the place on the axis that is
+/// nearest to it, s' the speed with which that place moves along the axis, and f the distance, which is the sum of the
+/// radii R at the contact. Then f' = n . v, s' = u . v + f n . u', and f'' = n . x'' + (v . v - s'^2 - (n . v)^2) / f.
+inline double opens_at_side(const Eigen::Vector3d& along, const Eigen::Vector3d& turns, const Eigen::Vector3d& velocity,
+                            const Eigen::Vector3d& normal, double radii) {
+  const Eigen::Vector3d axis = along / norm(along);
+  const double slides = dot(axis, velocity) + radii * dot(normal, cross(turns, axis)), closes = dot(normal, velocity);
+  return (squared_norm(velocity) - slides * slides - closes * closes) / radii;
+}
+
 /// The contact of two edges that cross, each turning with its body.
 ///
 /// Let x_a and x_b be points of the two, n the unit normal of both, and R the sum of the radii. The gap is f = n . (x_b

@@ -93,14 +93,33 @@ double TurningBounces<Motion>::pressed(BodySlot a, const Motion& motion_a, BodyS
     normal_turns = cross(turns_a, n);
   } else if (contact.feature_b.kind == Feature::Kind::face) {
     normal_turns = cross(turns_b, n);
-  } else if (bodies_[a].shape && bodies_[b].shape) {
-    auto edge_a = contact_edge(bodies_[a].shape->shape, contact.feature_a);
-    auto edge_b = contact_edge(bodies_[b].shape->shape, contact.feature_b);
+  } else {
+    const auto edge_of = [&](BodySlot slot, const Feature& feature) {
+      return bodies_[slot].shape ? contact_edge(bodies_[slot].shape->shape, feature) : std::nullopt;
+    };
+    const auto end_of = [&](BodySlot slot, const Feature& feature) {
+      if (ball(slot)) return std::optional(bodies_.mover(slot).radius);
+      return bodies_[slot].shape ? contact_end(bodies_[slot].shape->shape, feature) : std::nullopt;
+    };
+    const auto in_world = [&](const Motion& motion, const Vector3d& x) {
+      const Eigen::Matrix3d axes = motion.rotation(contact.time).matrix();
+      return Vector3d(axes.col(0) * x[0] + axes.col(1) * x[1] + axes.col(2) * x[2]);
+    };
+    auto edge_a = edge_of(a, contact.feature_a), edge_b = edge_of(b, contact.feature_b);
+    if (edge_a.has_value() != edge_b.has_value()) {
+      const auto end = edge_a ? end_of(b, contact.feature_b) : end_of(a, contact.feature_a);
+      const ContactEdge& edge = edge_a ? *edge_a : *edge_b;
+      const double radii = edge.radius + end.value_or(0);
+      if (end && radii > 0) {
+        const Vector3d way_a = (edge_a ? edge.radius : *end) * n, way_b = (edge_a ? *end : edge.radius) * n;
+        acceleration = rates.acceleration(contact.point) + cross(turns_a, cross(turns_a, way_a)) +
+                       cross(turns_b, cross(turns_b, way_b));
+        velocity = rates.velocity(contact.point) + cross(turns_a, way_a) + cross(turns_b, way_b);
+        const Motion& of_edge = edge_a ? motion_a : motion_b;
+        rounded = -opens_at_side(in_world(of_edge, edge.along), of_edge.angular_velocity, velocity, n, radii);
+      }
+    }
     if (edge_a && edge_b) {
-      const auto in_world = [&](const Motion& motion, const Vector3d& x) {
-        const Eigen::Matrix3d axes = motion.rotation(contact.time).matrix();
-        return Vector3d(axes.col(0) * x[0] + axes.col(1) * x[1] + axes.col(2) * x[2]);
-      };
       edge_a->along = in_world(motion_a, edge_a->along);
       edge_b->along = in_world(motion_b, edge_b->along);
       if (const auto edges = CrossingEdges::of(*edge_a, *edge_b, turns_a, turns_b, n)) {

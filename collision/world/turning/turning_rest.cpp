@@ -1,6 +1,7 @@
 #include "collision/world/turning/turning_rest.hpp"
 
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape_forms.hpp"
@@ -221,9 +222,32 @@ double TurningRest<Motion>::calm_speed(const Scale& scale) const {
   return std::sqrt(calm_energy * scale.acceleration * holding_distance(scale));
 }
 
+/// The velocity with which a fixed body slides below what is carried, if it is a half-space that does so.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slides_under(BodySlot slot, const Carrier& carrier) const {
+  if (!bodies_.fixed(slot) || !bodies_.unbounded(slot)) return std::nullopt;
+  const Motion& motion = bodies_.motion(slot);
+  return turning_rest::slides_under(carrier, half_space_of(*bodies_[slot].shape, motion), motion);
+}
+
+/// Whether a fixed body can bear for good what is carried, moving with the carrier or sliding below.
+template <class Motion>
+bool TurningRest<Motion>::stays_below(BodySlot slot, const Carrier& carrier) const {
+  return moves_with(bodies_.motion(slot), carrier) || slides_under(slot, carrier);
+}
+
+/// The velocity of the second of two bodies, seen from the first, where one is carried and the other slides below it.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slip(Key key, const Carrier& carrier) const {
+  if (bodies_.fixed(key.second)) return slides_under(key.second, carrier);
+  auto found = slides_under(key.first, carrier);
+  if (found) *found = -*found;
+  return found;
+}
+
 /// How that moves what two bodies that touch lie on: the fixed one of them, and what the others lie on that have
-/// touched something already. Nothing if these move differently, or if a fixed body turns; it stands still if there are
-/// none.
+/// touched something already. Nothing if these move differently, or if a fixed body turns, but for a half-space that
+/// slides below what is carried by something else; it stands still if there are none.
 template <class Motion>
 std::optional<Carrier> TurningRest<Motion>::common_carrier(BodySlot a, BodySlot b) const {
   std::optional<Carrier> found;
@@ -231,7 +255,11 @@ std::optional<Carrier> TurningRest<Motion>::common_carrier(BodySlot a, BodySlot 
     const bool fixed = bodies_.fixed(slot);
     if (!fixed && (slot >= of_.size() || of_[slot].others.empty())) continue;
     const std::optional<Carrier> carrier = fixed ? carrier_of(bodies_.motion(slot)) : of_[slot].carrier;
-    if (!carrier || (found && !(*found == *carrier))) return std::nullopt;
+    if (!carrier) return std::nullopt;
+    if (found && !(*found == *carrier)) {
+      if (slides_under(slot, *found)) continue;
+      if (!slides_under(a, *carrier)) return std::nullopt;
+    }
     found = carrier;
   }
   return found ? found : Carrier{};
@@ -240,7 +268,7 @@ std::optional<Carrier> TurningRest<Motion>::common_carrier(BodySlot a, BodySlot 
 template <class Motion>
 bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Carrier& carrier) const {
   const Motion& motion = bodies_.motion(slot);
-  if (bodies_.fixed(slot)) return moves_with(motion, carrier);
+  if (bodies_.fixed(slot)) return stays_below(slot, carrier);
   const Scale scale{acceleration, bodies_[slot].bounding_radius, driven_by_corners(bodies_[slot].shape)};
   const auto others = slot < of_.size() ? static_cast<double>(of_[slot].others.size()) : 0;
   const double driven = std::clamp(others / calm_neighbours, 1.0, most_driven);
@@ -249,20 +277,24 @@ bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Carrier
 }
 
 template <class Motion>
-void TurningRest<Motion>::note(Key key, const collision::Contact& contact) {
+void TurningRest<Motion>::note(Key key, const collision::Contact& contact, const Carrier& carrier) {
   const double t = clock_.now;
   const BodyFrame a(bodies_.motion(key.first), t), b(bodies_.motion(key.second), t);
   auto& places = pair(key).places;
   const Scale scale = this->scale(key);
   const double far = holding_distance(scale);
+  const auto slip = this->slip(key, carrier);
+  const auto at = [&](const detail::TouchedPlace& place) { return point_of(place, a, b, bodies_.fixed(key.first)); };
   std::erase_if(places, [&](const detail::TouchedPlace& place) {
-    const Vector3d x = a.out(place.on_a);
-    const bool lasts = t - place.time <= memory * flight_ && norm(b.out(place.on_b) - x) <= far;
+    const Vector3d x = slip ? at(place) : a.out(place.on_a);
+    const bool lasts = t - place.time <= memory * flight_ && apart(place, a, b, slip.has_value()) <= far;
     return !lasts ||
            (norm(x - contact.point) <= same_place * scale.size && dot(place.normal, contact.normal) >= same_side);
   });
   if (places.size() >= most_places) {
-    const auto way = [&](const detail::TouchedPlace& place) { return norm(a.out(place.on_a) - contact.point); };
+    const auto way = [&](const detail::TouchedPlace& place) {
+      return norm((slip ? at(place) : a.out(place.on_a)) - contact.point);
+    };
     places.erase(
         std::min_element(places.begin(), places.end(), [&](const auto& x, const auto& y) { return way(x) < way(y); }));
   }
@@ -286,7 +318,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     return false;
   }
   if (bodies_.numbered()) throw RestsInPart();
-  note({a, b}, contact);
+  note({a, b}, contact, *carrier);
   bool long_enough = true, patient = true;
   for (const BodySlot slot : {a, b}) {
     if (bodies_.fixed(slot) || carries(slot)) continue;

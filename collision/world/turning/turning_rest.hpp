@@ -62,8 +62,9 @@ void archive_members(Archive& archive, LyingPair& pair) {
 
 }  // namespace detail
 
-/// Rest in worlds of bodies that turn: not of contacts that slide or roll, but of groups of bodies that do not move at
-/// all, or only with what carries them. docs/turning.md states the law.
+/// Rest in worlds of bodies that turn: not of contacts that roll, but of groups of bodies that do not move at all, or
+/// only with what carries them. Of contacts that slide those with a half-space that goes on below what is held fast, as
+/// a belt below crates at a stop. docs/turning.md states the law.
 ///
 /// Bodies that are pressed together make flights of WorldOptions::shortest_flight, again and again. A body is *calm*
 /// while no point of it is faster than such flights make it, seen from the fixed body that it lies on, directly or
@@ -258,10 +259,13 @@ class TurningRest {
   double holding_distance(const Scale& scale) const;
   double calm_speed(const Scale& scale) const;
   std::optional<turning_rest::Carrier> common_carrier(BodySlot a, BodySlot b) const;
+  std::optional<Eigen::Vector3d> slides_under(BodySlot slot, const turning_rest::Carrier& carrier) const;
+  bool stays_below(BodySlot slot, const turning_rest::Carrier& carrier) const;
+  std::optional<Eigen::Vector3d> slip(Key key, const turning_rest::Carrier& carrier) const;
   bool calm(BodySlot slot, double acceleration, const turning_rest::Carrier& carrier) const;
   bool slides(Key key, const Eigen::Vector3d& normal) const;
   void note_what_slides_on(Group& group, const MobilityOf& mobility) const;
-  void note(Key key, const collision::Contact& contact);
+  void note(Key key, const collision::Contact& contact, const turning_rest::Carrier& carrier);
   Group find_group(BodySlot first, bool resting = false);
   bool ready(BodySlot slot, double acceleration) const;
   /// The group without some of its bodies, by place, and without those that then touch nothing.

@@ -224,20 +224,21 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
           std::min(bodies_[key.first].tangential_restitution, bodies_[key.second].tangential_restitution) == -1;
       const double rolling = std::min(bodies_[key.first].rolling_friction, bodies_[key.second].rolling_friction);
       const bool rests = pairs_[key].rests;
+      const auto slip = this->slip(key, of_[slot].carrier);
       bool links = false;
       for (const detail::TouchedPlace& place : pairs_[key].places) {
         const Vector3d on_a = a.out(place.on_a), on_b = b.out(place.on_b);
-        if (!rests && (t - place.time > memory * flight_ || norm(on_b - on_a) > far)) continue;
+        if (!rests && (t - place.time > memory * flight_ || apart(place, a, b, slip.has_value()) > far)) continue;
         if (!std::exchange(links, true) && !bodies_.fixed(other)) visit(other);
         const auto list = [&](std::vector<std::uint32_t>& places) {
           places.push_back(of_[slot].place);
           if (!bodies_.fixed(other)) places.push_back(of_[other].place);
         };
-        if (!rests && bodies_.fixed(other) && !moves_with(bodies_.motion(other), of_[slot].carrier)) list(busy);
-        if (!rests && (friction == 0 || smooth) && slides(key, place.normal)) list(group.sliding);
-        Vector3d x = 0.5 * (on_a + on_b);
+        if (!rests && bodies_.fixed(other) && !stays_below(other, of_[slot].carrier)) list(busy);
+        if (!rests && !slip && (friction == 0 || smooth) && slides(key, place.normal)) list(group.sliding);
+        Vector3d x = slip ? point_of(place, a, b, bodies_.fixed(key.first)) : Vector3d(0.5 * (on_a + on_b));
         for (const auto& [slot_of, frame] : {std::pair<BodySlot, const BodyFrame&>{key.first, a}, {key.second, b}}) {
-          if (bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;
+          if (slip || bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;
           x = pressed_at(x, frame.origin(), half_weight(slot_of), place.normal, rolling);
           break;
         }
@@ -246,7 +247,8 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
                                    .arm_a = x - a.origin(),
                                    .arm_b = x - b.origin(),
                                    .normal = place.normal,
-                                   .friction = smooth ? 0 : friction});
+                                   .friction = smooth ? 0 : friction,
+                                   .pull = slip ? Vector3d(-*slip / norm(*slip)) : Vector3d(Vector3d::Zero())});
         group.pairs.push_back(key);
       }
     }

@@ -106,7 +106,7 @@ void TurningRest<Motion>::audit(double) const {
     const turning_rest::Carrier& carrier = of_[bodies_.fixed(key.first) ? key.second : key.first].carrier;
     for (const BodySlot slot : {key.first, key.second}) {
       need(bodies_.entered(slot), slot, "it rests on another, and is not there");
-      need(!pair.rests || moves_with(bodies_.motion(slot), carrier), slot,
+      need(!pair.rests || moves_with(bodies_.motion(slot), carrier) || slides_under(slot, carrier), slot,
            "it rests, and does not move with what it rests on");
       need(!pair.rests || of_[slot].rests || bodies_.fixed(slot), slot, "it rests on another, and is awake");
     }

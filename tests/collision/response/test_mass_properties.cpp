@@ -224,6 +224,19 @@ TEST_CASE("A tetrahedron by its formula", "[mass properties]") {
   CHECK(found.centre == Vector3d::Constant(0.25));
 }
 
+TEST_CASE("What is symmetric about a plane has no products of inertia across it", "[mass properties]") {
+  for (int sides = 3; sides <= 12; ++sides) {
+    CAPTURE(sides);
+    Vertices points;
+    for (int i = 0; i < sides; ++i) {
+      const double angle = 0.1 + 2 * std::acos(-1.0) * i / sides;
+      for (const double z : {-0.3, 0.3}) points.emplace_back(0.7 * std::cos(angle), 0.25 * std::sin(angle), z);
+    }
+    const MassProperties prism = mass_properties(convex_hull(points), 1.7);
+    CHECK((prism.inertia(0, 2) == 0 && prism.inertia(1, 2) == 0 && prism.centre[2] == 0));
+  }
+}
+
 TEST_CASE("Finer and finer balls of triangles approach the ball", "[mass properties]") {
   double before = 0;
   for (int level = 0; level < 5; ++level) {

@@ -73,6 +73,29 @@ TEST_CASE("a body lies on a slope that is less steep than friction allows", "[ba
   CHECK_FALSE(lies(weight + Vector3d(11, 0, 0), corners, 2));
 }
 
+TEST_CASE("what slides is pulled in one direction alone, with all of the friction", "[balance]") {
+  // A crate on ground that slides to +x below it, at a stop that pushes it to one side.
+  const auto lies_at_stop = [](const Vector3d& pull, double friction, const Vector3d& pushes) {
+    const std::vector<Load> loads{{.mass = 2, .size = 1, .acceleration = weight}};
+    std::vector<Foothold> at;
+    for (const Vector3d& point : corners) {
+      at.push_back({.a = Foothold::fixed, .b = 0, .arm_a = {}, .arm_b = point, .normal = Vector3d::UnitZ()});
+      at.back().friction = friction, at.back().pull = pull;
+    }
+    for (const double z : {-1.0, 1.0}) {
+      at.push_back({.a = Foothold::fixed, .b = 0, .arm_a = {}, .arm_b = {-pushes[0], 0, z}, .normal = pushes});
+    }
+    return balanced(loads, at);
+  };
+  const Vector3d x = Vector3d::UnitX(), none = Vector3d::Zero();
+  CHECK(lies_at_stop(none, 0.5, x));
+  CHECK(lies_at_stop(x, 0.5, -x));
+  CHECK_FALSE(lies_at_stop(x, 0.5, x));
+  CHECK_FALSE(lies_at_stop(Vector3d::UnitY(), 0.5, x));
+  CHECK_FALSE(lies_at_stop(-x, 0.5, -x));
+  CHECK(lies_at_stop(-x, 0, x));
+}
+
 TEST_CASE("bodies hold each other", "[balance]") {
   const auto stack = [&](double offset, int high) {
     std::vector<Load> loads;

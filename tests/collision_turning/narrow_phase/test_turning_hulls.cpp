@@ -23,6 +23,8 @@ namespace {
 using namespace kds;
 using namespace kds::collision;
 using Eigen::Vector3d;
+template <int Degree>
+using Motion = certificates::RigidMotion<Degree>;
 using kds::tests::check_meeting;
 using kds::tests::first_meeting;
 using kds::tests::motion_of;
@@ -140,6 +142,38 @@ TEST_CASE("hulls that are boxes, wherever in their bodies, meet as hulls do, to 
     CHECK(as_boxes.penetrate(found + 0.01) == as_hulls.penetrate(found + 0.01));
   }
   CHECK(meetings > 30);
+}
+
+TEST_CASE("edges that keep parallel to a common axis of turning are told without exact tests",
+          "[narrow-phase][turning][hull]") {
+  const double pi = std::acos(-1.0);
+  const auto prism = [&](int sides, double first, double radius, double half) {
+    std::vector<Vector3d> points;
+    for (int i = 0; i < sides; ++i) {
+      const double angle = first + 2 * pi * i / sides;
+      for (const double z : {-half, half}) points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
+    }
+    return convex_hull(points);
+  };
+  std::uint64_t meetings = 0;
+  turning_sign_counters = {};
+  for (int i = 0; i < 24; ++i) {
+    CAPTURE(i);
+    const Shape a = prism(4, 0.1 + i, 1.5, 1), b = prism(3 + i % 5, 0.2, 0.25, i % 2 == 0 ? 1 : 0.3);
+    Motion<2> of_a{}, of_b{};
+    of_a.angular_velocity = {0, 0, i % 3 == 0 ? 0 : 0.3};
+    of_b.path.coefficients = {Vector3d(0.1, 2.5, 0), Vector3d(0, -1, 0), Vector3d(0, -1, 0)};
+    of_b.angular_velocity = {0, 0, 0.1 * i - 1};
+    of_b.orientation = {1, 0, 0, 0.1 * i};
+    const PlacedShape placed_a = place(a, Eigen::Quaterniond::Identity());
+    const PlacedShape placed_b = place(b, Eigen::Quaterniond::Identity());
+    const MovingShape<Motion<2>> moving_a{placed_a, of_a}, moving_b{placed_b, of_b};
+    const double t = first_contact(moving_a, moving_b, 0, 2, ContactMode::resolved);
+    meetings += t < 2;
+    CHECK(in_contact(moving_a, moving_b, t));
+  }
+  CHECK(meetings == 24);
+  CHECK(turning_sign_counters.exact <= 4 * meetings);
 }
 
 TEST_CASE("turning hulls: grazing, by gaps of any size", "[narrow-phase][turning][hull]") {

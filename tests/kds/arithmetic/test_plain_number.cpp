@@ -36,6 +36,13 @@ TEST_CASE("a plain number is known to be zero only where that is exact", "[arith
   CHECK_FALSE((PlainNumber(most) + PlainNumber(most) - PlainNumber(most)).is_zero());
   CHECK_FALSE((PlainNumber(most) * PlainNumber(4) - PlainNumber(most) * PlainNumber(4)).is_zero());
   CHECK((difference<PlainNumber>(0.7, 0.7)).is_zero());
+  // The same two factors, unless one of them is rounded.
+  const PlainNumber x(0.1), y(0.7);
+  CHECK(difference_of_products(x, y, x, y).is_zero());
+  CHECK(difference_of_products(x, y, y, x).is_zero());
+  CHECK_FALSE(difference_of_products(x, y, y, y).is_zero());
+  CHECK_FALSE(difference_of_products(x, y, -x, y).is_zero());
+  CHECK_FALSE(difference_of_products(rounded, y, rounded, y).is_zero());
 }
 
 TEST_CASE("what a plain number knows to be zero is, after operations at random", "[arithmetic]") {
