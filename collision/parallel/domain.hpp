@@ -213,8 +213,8 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<Change> fresh_;                   ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;               ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
-  DomainEvent::Cause cause_;        ///< the last event from which others may follow
-  double caused_at_ = -never;       ///< s
+  DomainEvent::Cause cause_;     ///< the last event from which others may follow
+  double caused_at_ = -never;    ///< s
   std::uint64_t ends_seen_ = 0;  ///< RestingEvent::count, then
   std::vector<BodySlot> wrong_;
   BodyMoves moves_;

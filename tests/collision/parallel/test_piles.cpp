@@ -120,6 +120,7 @@ class InTwo {
     std::iota(numbers_.begin(), numbers_.end(), BodySlot{0});
     division_ = divide(engine().bodies(), {}, numbers_, now, {.domains = 2}, 1, alone);
     division_->halo = halo;
+    division_->window_end = now + 4;
     std::vector<DomainIndex> knowers;
     for (const BodySlot slot : numbers_) {
       const DomainIndex owner = assign_body(*division_, engine().bodies(), {}, slot, now, knowers);
@@ -136,9 +137,7 @@ class InTwo {
   Domain<Path>& domain(std::size_t i) { return *domains_[i]; }
   const BodyStore<Path>& store() const { return store_; }
   /// How far a body is outside the cell of the first domain at the beginning.
-  double outside_first(BodyId id) {
-    return outside(whole_.motion(id).position(now), division_->partition.cell(0));
-  }
+  double outside_first(BodyId id) { return outside(whole_.motion(id).position(now), division_->partition.cell(0)); }
 
  private:
   Engine<Path>& engine() { return detail::EngineOf<Path>::of(whole_); }
@@ -235,6 +234,18 @@ TEST_CASE("Domain: who needs no longer know a body that lies deep in its cell do
     CHECK(knowers.size() == 1);
   });
   CHECK(moves == 4);
+}
+
+TEST_CASE("Domain: a body that ceases to rest may leave the depth of its cell", "[parallel]") {
+  auto pressed = soft_ball({-20, 0, 0.5}, {0, 1, 0});
+  pressed.motion[0].coefficients[2] = {2.5, 0, -2.5};
+  const auto stop = tests::fixed_body<2>(Box{{0.5, 0.5, 0.5}}, tests::motion<2>({-19, 0, 0.5}));
+  InTwo two(3, {pressed, stop, soft_ball({20, 0, 0.5})});
+  two.domain(0).run(InTwo::now + 0.125);
+  CHECK(two.domain(0).report().overshoot == 0);
+  two.domain(0).run(InTwo::now + 4);
+  CHECK(two.domain(0).report().stayed);
+  CHECK(two.domain(0).report().overshoot > 0);
 }
 
 TEMPLATE_TEST_CASE_SIG("Domains: bodies that lean on each other have the events of one world", "[parallel]",
