@@ -36,7 +36,8 @@ Domain<Motion>::Domain(const WorldOptions& options, const Division& division, st
       return slot < known_.size() && (known_[slot].role == Role::deep || known_[slot].role == Role::followed);
     });
   }
-  // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away.
+  // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away. Those that are
+  // known farther out, in islands, are nearer than the cells of their owners, so these are among them too.
   const Partition& partition = division.partition;
   partition.each_within(partition.cell(index), 2 * division.halo, [&](std::size_t other) {
     if (other != index) neighbours_.push_back({static_cast<DomainIndex>(other), partition.cell(other), never});
@@ -90,7 +91,6 @@ void Domain<Motion>::begin_window() {
   followed_.clear(), copies_.clear(), changes_.clear(), changed_.clear();
   report_ = {.known = world_.size()};
   bulge_ = 0;
-  add_neighbours();
   for (NeighbourDomain& neighbour : neighbours_) neighbour.nearest = never;
   for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
     if (!bodies.alive(slot)) continue;
@@ -353,7 +353,6 @@ DomainIndex Domain<Motion>::owner_of(BodySlot slot) const {
 
 template <class Motion>
 void Domain<Motion>::piece(World&, BodyId id) {
-  note_islands();
   const BodySlot slot = body_slot(id);
   const double t = world_.now();
   const Known& known = known_[slot];

@@ -170,7 +170,6 @@ class Domain final : private BasicWorldListener<Motion> {
   std::size_t place_of(BodySlot number) const;
   std::uint32_t strangers_to(BodySlot number);
   void begin_to_follow(BodySlot slot, double t);
-  void add_neighbours();
   void begin_islands();
   void note_islands();
   void mark(std::span<const BodySlot> island, const DomainEvent::Cause& cause, double t);
@@ -214,10 +213,9 @@ class Domain final : private BasicWorldListener<Motion> {
   std::vector<Change> fresh_;                   ///< as changes_, of this step; sorted by number when it is over
   MotionChanges<Motion> changes_;               ///< of this window, of bodies that others know or own
   std::vector<DomainEvent> events_;
-  DomainEvent::Cause cause_;        ///< the last event from which others may follow
-  double caused_at_ = -never;       ///< s
-  std::uint64_t ends_seen_ = 0;     ///< RestingEvent::count, then
-  std::vector<DomainEvent> marks_;  ///< of what follows from cause_
+  DomainEvent::Cause cause_;     ///< the last event from which others may follow
+  double caused_at_ = -never;    ///< s
+  std::uint64_t ends_seen_ = 0;  ///< RestingEvent::count, then
   std::vector<BodySlot> wrong_;
   BodyMoves moves_;
   std::vector<NeighbourDomain> neighbours_;

@@ -66,7 +66,6 @@ void Domain<Motion>::begin_cause(DomainEvent::Cause::Phase phase, BodyId a, Body
   cause_ = {phase, a, b};
   caused_at_ = t;
   ends_seen_ = engine_.parts().resting.last_event().count;
-  marks_.clear();
 }
 
 /// From what the event that is told now, at t, follows. What this world was not told of are the ends of contacts and
@@ -86,7 +85,6 @@ DomainEvent::Cause Domain<Motion>::cause_at(double t) {
 /// owners.
 template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
-  note_islands();
   const auto& bodies = engine_.bodies();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
   if (!turns<Motion> && !bodies.fixed(a) && !bodies.fixed(b)) {
@@ -109,7 +107,6 @@ void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
 
 template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const WallEvent& event) {
-  note_islands();
   if (turns<Motion>) {
     report_.divisible = false;
     return;
@@ -134,7 +131,6 @@ void Domain<Motion>::contact(World&, const PairEvent& event) {
   record(DomainEvent::Kind::contact, event);
   if (event.a == event.b) return;  // A mesh that bends goes through itself.
   begin_cause(DomainEvent::Cause::Phase::contacts, key(event.a), key(event.b), event.contact.time);
-  note_islands();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
   if (!resolves_ || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
   changed(a, event.contact.time);
@@ -162,7 +158,6 @@ void Domain<Motion>::wall(World&, const WallEvent& event) {
          event.user_data});
   }
   begin_cause(DomainEvent::Cause::Phase::walls, key(event.body), static_cast<BodyId>(event.wall), event.contact.time);
-  note_islands();
   changed(slot, event.contact.time);
 }
 

@@ -17,21 +17,6 @@ bool Domain<Motion>::leans(BodySlot slot) const {
   }
 }
 
-/// The owners of copies are neighbours, also of those in islands that reach far.
-template <class Motion>
-void Domain<Motion>::add_neighbours() {
-  bool any = false;
-  for (const BodySlot slot : slots_) {
-    const DomainIndex owner = division_.owner_of(number(slot));
-    if (owner == Division::nobody || owner == index_) continue;
-    const auto place = std::ranges::lower_bound(neighbours_, owner, {}, &NeighbourDomain::domain);
-    if (place != neighbours_.end() && place->domain == owner) continue;
-    neighbours_.insert(place, {owner, division_.partition.cell(owner), never});
-    any = true;
-  }
-  if (any) strangers_.clear(), strangers_to_.clear();
-}
-
 /// An island is known wholly. What owned bodies meet has to be right as far as bodies reach that lean on them.
 template <class Motion>
 void Domain<Motion>::begin_islands() {
@@ -73,13 +58,7 @@ void Domain<Motion>::mark(std::span<const BodySlot> island, const DomainEvent::C
   if (!mine || !logs_) return;
   const BodyId first = engine_.bodies().keys().key(island.front());
   for (const DomainIndex other : others) {
-    const DomainEvent event{Kind::mark, other, first, first, {.time = t}, 0, 0, cause};
-    const auto same = [&](const DomainEvent& before) {
-      return before.a == event.a && before.other_owner == event.other_owner;
-    };
-    if (std::ranges::any_of(marks_, same)) continue;
-    marks_.push_back(event);
-    put(event);
+    put({Kind::mark, other, first, first, {.time = t}, 0, 0, cause});
   }
 }
 

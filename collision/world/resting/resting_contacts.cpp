@@ -90,9 +90,6 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::find_like(const 
 
 template <class Motion>
 void RestingContacts<Motion>::add(const Contact& contact) {
-  // Of paths of degree 3 and above islands are not divided either.
-  const bool leans = contact.b != no_body && !bodies_.fixed(contact.a) && !bodies_.fixed(contact.b);
-  if (Motion::degree >= 3 && bodies_.numbered() && leans) throw RestsInPart();
   member(contact.a);
   for (const Slot slot : fewer(contact.a, contact.b)) {
     Contact& other = contacts_[slot];

@@ -16,9 +16,6 @@ namespace kds::collision {
 template <class Motion>
 bool RestingContacts<Motion>::divisible() const {
   if (!solved()) return false;
-  for (BodySlot id = 0; Motion::degree >= 3 && id < of_.size(); ++id) {
-    if (leans(id)) return false;
-  }
   const auto has_span = [this](BodySlot id) { return id < spans_.slots() && spans_.contains(id); };
   std::vector<char> seen(of_.size());
   for (BodySlot id = 0; id < of_.size(); ++id) {
@@ -81,10 +78,10 @@ void RestingContacts<Motion>::go_on_from(BodySlot id, const Progress& progress,
     const Slot slot = give_slot(contact);
     list(slot, id);
     leans ? void(++half_listed_) : list(slot, other);
-    if (state.releases[i] < never) {
+    if (state.releases[i] < (Motion::degree <= 2 ? never : contact.ends)) {
       releases_.set(slot, state.releases[i]);
     } else {
-      schedule_release(slot);  // as at a new horizon
+      schedule_release(slot);  // as at a new horizon: the other world may have looked less far ahead
     }
   }
 }

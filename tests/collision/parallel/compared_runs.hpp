@@ -92,10 +92,23 @@ inline void require_same(const std::vector<Event>& right, const std::vector<Even
   throw std::runtime_error(text.str());
 }
 
+/// Bodies have the motions of one world, and what rests of them, which decides later events, is the same, too.
+template <class Motion>
+void require_same_bodies(BasicWorld<Motion>& right, BasicWorld<Motion>& whole, const std::string& what) {
+  const auto& rests = detail::EngineOf<Motion>::of(right).transfer();
+  const auto& found = detail::EngineOf<Motion>::of(whole).transfer();
+  for (BodyId id = 0; id < right.size(); ++id) {
+    const auto of_body = [&](const char* it) { return what + ": " + it + " body " + std::to_string(id) + " differs"; };
+    if (!(whole.motion(id) == right.motion(id))) throw std::runtime_error(of_body("the motion of"));
+    if (!same_bits(found.resting(body_slot(id)), rests.resting(body_slot(id))))
+      throw std::runtime_error(of_body("what rests of"));
+  }
+}
+
 /// What goes on from a state in parts, by so many processes, has the motions and the last events of one world.
 template <class Motion>
 void require_goes_on(const Staging<Motion>& scene, const ParallelOptions& parallel, std::size_t count,
-                     const StateInParts& state, const std::vector<Event>& later, const BasicWorld<Motion>& right,
+                     const StateInParts& state, const std::vector<Event>& later, BasicWorld<Motion>& right,
                      const std::string& what) {
   const auto blocks = state.blocks();
   const auto go_on = [&](Processes* processes) {
@@ -108,10 +121,7 @@ void require_goes_on(const Staging<Motion>& scene, const ParallelOptions& parall
     if (rank == 0) require_same(later, log.events, what);
     auto& whole = world.whole();
     whole.audit();
-    for (BodyId id = 0; id < right.size(); ++id) {
-      if (!(whole.motion(id) == right.motion(id)))
-        throw std::runtime_error(what + ": the motion of body " + std::to_string(id) + " differs");
-    }
+    require_same_bodies(right, whole, what);
   };
   if (count == 1) return go_on(nullptr);
   ThreadProcesses(count).run([&](Processes& processes) { go_on(&processes); });
@@ -168,11 +178,7 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
         told.overlaps != counters.overlaps || told.wall_contacts != counters.wall_contacts) {
       throw std::runtime_error(what + ": the counts differ");
     }
-    auto& whole = divided.whole();
-    for (BodyId id = 0; id < world.size(); ++id) {
-      if (whole.motion(id) == world.motion(id)) continue;
-      throw std::runtime_error(what + ": the motion of body " + std::to_string(id) + " differs");
-    }
+    require_same_bodies(world, divided.whole(), what);
     if (rank == 0) seen.add(told, log.events);
   };
   if (manner.processes == 1) {

@@ -40,6 +40,9 @@ class PileMaker {
     }
     const std::array kinds{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap};
     options.broad_phase = kinds[random_.below(kinds.size())];
+    if constexpr (Degree >= 3) {
+      if (random_.one_in(3)) options.window = random_.between(0.1, 1);
+    }
     if (!on_wall) add_ground();
     for (int groups = random_.integer(2, 7); groups > 0; --groups) add_group();
     for (int single = random_.integer(0, 12); single > 0; --single) {  // They strike the others.

@@ -126,4 +126,17 @@ TEST_CASE("Domains: a lift that bounces off walls moves all that it carries at o
   CHECK(seen.rests >= 6 * 2 * 64);
 }
 
+TEST_CASE("Domains: balls slide off a floor that begins to move sideways under them", "[parallel]") {
+  const auto fill = [](World<2>& world) {
+    auto floor = tests::fixed_body<2>(Box{{6, 6, 1}}, tests::motion<2>({5, 5, -1}));
+    floor.motion.push_back(tests::motion<2>({5, 5, -1}, {3, -2, 0}, Vector3d::Zero(), 0.25));
+    world.add_body(floor);
+    add_balls(world, 6, 0);
+  };
+  const Seen seen = run_in_all_manners({tests::with_response(Response::elastic), fill, 2, "a floor that moves"});
+  INFO(seen.text());
+  CHECK(seen.divided == 6);
+  CHECK(seen.rests >= 6 * 2 * 18);
+}
+
 }  // namespace kds::collision::test_tables

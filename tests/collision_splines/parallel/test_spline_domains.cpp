@@ -1,6 +1,7 @@
 // Bodies on cubics, quartics and quintics, in domains: the events are those of one world, bit for bit.
 #include "collision/parallel/division.hpp"
 #include "tests/collision/parallel/contact_laws.hpp"
+#include "tests/collision/parallel/piles.hpp"
 #include "tests/collision/parallel/stagings.hpp"
 #include "tests/collision/parallel/tables.hpp"
 
@@ -95,6 +96,14 @@ TEST_CASE("Domains: bodies on cubics that come to rest on floors have the events
   CHECK(seen.divided > 8);
   CHECK(seen.rests > 300);
   CHECK(seen.tables > 3);
+}
+
+TEST_CASE("Domains: bodies on cubics that lean on each other have the events of one world", "[parallel]") {
+  Seen seen;
+  tests::compare_piles<3>(1, 8, 6, seen);
+  INFO(seen.text());
+  CHECK(seen.windows > 5);
+  CHECK(seen.rests > 50);
 }
 
 TEST_CASE("Domains: satellites on streams of quintics pass each other", "[parallel]") {
