@@ -165,13 +165,13 @@ NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) c
   const NearestPoint nearest = nearest_point(triangle_, place);
   const Vector3d apart = place - nearest.point;
   PolyhedronPart face = part(2, 0);
-  if (nearest.dimension == 2 || (gap > 0 && is_over_face(apart, face.direction, radius_, gap))) {
-    const double height = dot(face.direction, apart);
-    const Vector3d from_face = height * face.direction;
-    if (height < 0) face.direction = -face.direction;
-    return {face, from_face};
-  }
-  return {part(nearest.dimension, nearest.index), apart};
+  const bool inside = nearest.dimension == 2;
+  if (!inside && !(gap > 0 && is_over_face(apart, face.direction, radius_, gap)))
+    return {part(nearest.dimension, nearest.index), apart};
+  const double height = dot(face.direction, apart);
+  const Vector3d from_face = inside ? apart : Vector3d(height * face.direction);
+  if (height < 0) face.direction = -face.direction;
+  return {face, from_face};
 }
 
 template <int Degree>

@@ -49,9 +49,10 @@ struct PartingFromOrigin {
 /// the times at which they begin to are the exact failure times of these polynomials.
 ///
 /// Law. Just after tau they approach if the rate f at which the distance grows is negative there, by more than an error
-/// e: f + e < 0, or at least falling, (f + e)' < 0. The error is that of speeds, and the part of them, `tilt`, by which
-/// the direction across the part is not known; it grows with the time. Once the two are deeper than a gap the tilt
-/// counts no more: so they do not sink in however slowly they approach.
+/// e: f + e < 0, or at least falling, (f + e)' < 0. The error is that of speeds, and the part of them by which the
+/// direction across the part is not known: by roundings of places, over the radius, and by `tilt`. It grows with the
+/// time. Once the two are deeper than a gap that part counts no more: so they do not sink in however slowly they
+/// approach.
 template <int Degree>
 requires(Degree <= 2) class PartApproach {
  public:
@@ -66,11 +67,14 @@ requires(Degree <= 2) class PartApproach {
     }
     const auto speeds = smallest_speeds(motion);
     const double distance = plane_ ? 1.0 : radius;
+    constexpr double rounded_places = 0x1p-3;  // of a gap, which is 64 roundings
+    constexpr double most = 0x1p-20;
+    const double off = tilt + std::min(rounded_places * gap.c[0] / radius, most);
     for (std::size_t i = 0; i < Degree; ++i) {
       const double speed = static_cast<double>(i + 1) * norm(motion.coefficients[i + 1]);
       speeds_[i] = speed;
       deep_error_[i] = distance * speeds[i];
-      error_[i] = distance * (speeds[i] + tilt * speed);
+      error_[i] = distance * (speeds[i] + off * speed);
     }
     for (std::size_t i = 0; i <= Degree; ++i) {
       room_[i] = (i == 0 ? radius : 0.0) - gap.c[i];
