@@ -199,8 +199,7 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
     // It may be about to pass from one part to another: from an edge to the face, say.
     NearestPart ahead = nearest;
     const Vector3d sideways = velocity - dot(normal, velocity) * normal;
-    if (!inside && sideways.cwiseAbs().maxCoeff() > 0)
-      ahead = nearest_part(centre + gap * unit(sideways), 0);
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit(sideways), 0);
     // Off a face it may be carried by its speed, over its edge: then it approaches neither.
     approaching = approach_to(ahead).approaching(tau) &&
                   (nearest.dimension < 2 || inside || approach_to(nearest).approaching(tau));

@@ -284,8 +284,7 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     // It may be about to pass from one part to another.
     NearestPart ahead = nearest;
     const Vector3d sideways = across(velocity, normal);
-    if (!inside && sideways.cwiseAbs().maxCoeff() > 0)
-      ahead = nearest_part(centre + gap * unit_or_zero(sideways), 0);
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit_or_zero(sideways), 0);
     // Off a face it may be carried by its speed, over its edge: then it approaches neither.
     approaching = approach_to(ahead).approaching(tau) &&
                   (nearest.dimension < 2 || inside || approach_to(nearest).approaching(tau));

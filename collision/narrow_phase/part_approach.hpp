@@ -98,8 +98,8 @@ requires(Degree <= 2) class PartApproach {
     }
     const double product = dot(place, velocity);
     if (std::abs(product) > 2 * error + gap_(tau) * (speeds_[0] + tau * speeds_[1])) return product < 0;
-    return decide(rate_from_origin({0, 0}), rate_from_origin(error_), rate_from_origin(deep_error_), depth_from_origin(),
-                  tau);
+    return decide(rate_from_origin({0, 0}), rate_from_origin(error_), rate_from_origin(deep_error_),
+                  depth_from_origin(), tau);
   }
 
   /// Calls visit(time) for times between tau and end, both excluded, among which are all at which approaching() becomes
@@ -110,8 +110,8 @@ requires(Degree <= 2) class PartApproach {
       begins(rate_from_plane({0, 0}), rate_from_plane(error_), rate_from_plane(deep_error_), depth_in_plane(), tau, end,
              visit);
     } else {
-      begins(rate_from_origin({0, 0}), rate_from_origin(error_), rate_from_origin(deep_error_), depth_from_origin(), tau,
-             end, visit);
+      begins(rate_from_origin({0, 0}), rate_from_origin(error_), rate_from_origin(deep_error_), depth_from_origin(),
+             tau, end, visit);
     }
   }
 

@@ -132,8 +132,8 @@ bool curve_approaches(const RelativeMotion<Degree>& motion, double gap, double t
   return false;
 }
 
-/// Degree 3 and above: calls consider(time, distance) for the maxima between tau and end, both excluded, of the distance
-/// of a point on a path from a plane with a unit normal, or from the origin; until it returns true.
+/// Degree 3 and above: calls consider(time, distance) for the maxima between tau and end, both excluded, of the
+/// distance of a point on a path from a plane with a unit normal, or from the origin; until it returns true.
 template <int Degree, class Consider>
 void distance_maxima(const RelativeMotion<Degree>& motion, const Eigen::Vector3d& normal, const Eigen::Vector3d& at,
                      double tau, double end, const Consider& consider) {
