@@ -151,17 +151,27 @@ void BallTouch<Degree>::add_vertex(std::size_t i) {
   pieces_.add(piece);
 }
 
+template <int Degree>
+PolyhedronPart BallTouch<Degree>::part(int dimension, std::size_t i) const {
+  const Vector3d& at = triangle_.vertices[i];
+  if (dimension == 2) return {at, 2, unit(cross(triangle_.edge(0), triangle_.edge(1)))};
+  return {at, dimension, dimension == 1 ? unit(triangle_.edge(i)) : Vector3d(Vector3d::Zero())};
+}
+
 /// The part that a place is nearest to. If a gap is given, that is the face over all of its prism, which is wider than
 /// the triangle by some gaps: so a ball that slides from a face to the next goes on along their plane.
 template <int Degree>
 NearestPart BallTouch<Degree>::nearest_part(const Vector3d& place, double gap) const {
   const NearestPoint nearest = nearest_point(triangle_, place);
-  const Vector3d face = unit(cross(triangle_.edge(0), triangle_.edge(1)));
   const Vector3d apart = place - nearest.point;
-  if (nearest.dimension == 2) return {apart, 2, face};
-  if (gap > 0 && is_over_face(apart, face, radius_, gap)) return {dot(face, apart) * face, 2, face};
-  return {apart, nearest.dimension,
-          nearest.dimension == 1 ? unit(triangle_.edge(nearest.index)) : Vector3d(Vector3d::Zero())};
+  PolyhedronPart face = part(2, 0);
+  const bool inside = nearest.dimension == 2;
+  if (!inside && !(gap > 0 && is_over_face(apart, face.direction, radius_, gap)))
+    return {part(nearest.dimension, nearest.index), apart};
+  const double height = dot(face.direction, apart);
+  const Vector3d from_face = inside ? apart : Vector3d(height * face.direction);
+  if (height < 0) face.direction = -face.direction;
+  return {face, from_face};
 }
 
 template <int Degree>
@@ -172,51 +182,61 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
   const NearestPart nearest = nearest_part(centre, gap);
   const bool inside = nearest_part(centre, 0).dimension == 2;
   const Vector3d& apart = nearest.apart;
-  const auto speeds = smallest_speeds(motion_);
   if (!(apart.cwiseAbs().maxCoeff() > 0)) {
     // The centre passes through the surface: from now on it moves away.
-    const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
+    const Vector3d normal = part(2, 0).direction;
     return {dot(normal, velocity) < 0 ? Vector3d(-normal) : normal, -radius_, false};
   }
   const Vector3d normal = unit(apart);
   const double distance = std::sqrt(dot(apart, apart));
-  const double rate = dot(normal, velocity);
-  // A ball that has sunk in by a gap approaches however slowly it does.
-  const double tilt = nearest.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
-  bool approaching = rate < 0;
+  bool approaching = false;
   if constexpr (Degree >= 3) {
+    // A ball that has sunk in by a gap approaches however slowly it does.
+    const double tilt = nearest.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
     approaching = curve_approaches(motion_, gap, tau, tilt, nearest, inside,
                                    [&](const Vector3d& place) { return nearest_part(place, 0); });
-  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
-    // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature. The
-    // curvature is that of the part of the triangle that the ball comes to: it may be about to pass from an edge to the
-    // face.
-    Vector3d sideways = velocity - rate * normal;
+  } else {
+    // It may be about to pass from one part to another: from an edge to the face, say.
     NearestPart ahead = nearest;
+    const Vector3d sideways = velocity - dot(normal, velocity) * normal;
     if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit(sideways), 0);
-    if (ahead.dimension == 1) sideways -= dot(ahead.direction, sideways) * ahead.direction;
-    const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
-    const Vector3d acceleration = motion_.acceleration();
-    approaching = dot(normal, acceleration) + round < -speeds[1] - tilt * norm(acceleration);
+    // Off a face it may be carried by its speed, over its edge: then it approaches neither.
+    approaching = approach_to(ahead).approaching(tau) &&
+                  (nearest.dimension < 2 || inside || approach_to(nearest).approaching(tau));
   }
   return {normal, distance - radius_, approaching};
 }
 
-/// Where the distance to a part of the triangle has a maximum while that part is the nearest.
+/// The first time at which the ball, which does not approach, begins to.
 template <int Degree>
 double BallTouch<Degree>::turning(double tau, double end) const {
-  const auto consider = [&](double top, double distance) {
-    const Vector3d centre = motion_.position(top);
-    const Vector3d apart = centre - nearest_point(triangle_, centre).point;
-    if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
-    end = top;
-    return true;
-  };
-  if constexpr (Degree >= 2) {
-    const Vector3d normal = unit(cross(triangle_.edge(0), triangle_.edge(1)));
-    distance_maxima(motion_, normal, triangle_.vertices[0], tau, end, consider);
-    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(across_edge(i), horizon_, tau, end, consider);
-    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(from(i), horizon_, tau, end, consider);
+  if constexpr (Degree <= 2) {
+    const auto look = [&](const PolyhedronPart& each) {
+      approach_to(each).each_begin(tau, end, [&](double t) {
+        if (!approaching(t)) return false;
+        end = t;
+        return true;
+      });
+    };
+    PolyhedronPart face = part(2, 0);
+    look(face);
+    face.direction = -face.direction;
+    look(face);
+    for (const int dimension : {1, 0}) {
+      for (std::size_t i = 0; i < 3; ++i) look(part(dimension, i));
+    }
+  } else {
+    // Where the distance to a part of the triangle has a maximum while that part is the nearest.
+    const auto consider = [&](double top, double distance) {
+      const Vector3d centre = motion_.position(top);
+      const Vector3d apart = centre - nearest_point(triangle_, centre).point;
+      if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
+      end = top;
+      return true;
+    };
+    distance_maxima(motion_, part(2, 0).direction, triangle_.vertices[0], tau, end, consider);
+    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(across_edge(i), tau, end, consider);
+    for (std::size_t i = 0; i < 3; ++i) distance_maxima<Degree>(from(i), tau, end, consider);
   }
   return end;
 }

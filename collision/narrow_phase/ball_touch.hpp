@@ -71,7 +71,11 @@ class BallTouch {
   SpansOf<Degree> below(const Eigen::Vector3d& normal, double distance) const;
   bool matters(const Path& path) const;
   SpansOf<Degree> within(const Path& path) const;
+  PolyhedronPart part(int dimension, std::size_t i) const;
   NearestPart nearest_part(const Eigen::Vector3d& place, double gap) const;
+  auto approach_to(const PolyhedronPart& part) const requires(Degree <= 2) {
+    return PartApproach<Degree>(part, motion_, radius_, gap_, part.dimension == 2 ? tilt_of(triangle_) : 0.0);
+  }
   Path from(std::size_t vertex) const;
   Path across_edge(std::size_t i) const;
 

@@ -223,11 +223,34 @@ void CapsuleTouch<Degree>::add_point(const Vector3d& at, Corners around, double 
   add(piece);
 }
 
+/// The part of the prism that its connection with a place begins on.
+template <int Degree>
+NearestPart CapsuleTouch<Degree>::part_of(const SegmentWay& way) const {
+  Vector3d direction = Vector3d::Zero();
+  if (way.dimension == 1) direction = unit_or_zero(way.along);
+  if (way.dimension == 2) direction = unit_or_zero(way.along);
+  if (way.dimension == 2 && dot(direction, way.apart) < 0) direction = -direction;
+  return {{way.at, way.dimension, direction}, way.apart};
+}
+
+/// The part that a place of the centre is nearest to. If a gap is given, that is a face over all of the slab of the
+/// triangle at an end, which is wider by some gaps.
+template <int Degree>
+NearestPart CapsuleTouch<Degree>::nearest_part(const Vector3d& place, double gap) const {
+  SegmentWay way = shortest_way(triangle_, place, half_);
+  const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  if (gap > 0 && way.dimension < 2 && is_over_face(way.apart, face, radius_, gap)) {
+    way.apart = dot(face, way.apart) * face;
+    way.dimension = 2;
+    way.along = face;
+  }
+  return part_of(way);
+}
+
 template <int Degree>
 TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
   const Vector3d centre = motion_.position(tau);
   const Vector3d velocity = motion_.velocity(tau);
-  const auto speeds = smallest_speeds(motion_);
   const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
   // How deep the segment penetrates the triangle, by the faces of their prism.
   TouchDirection deepest{face, -TimeSpans::infinity, false};
@@ -242,68 +265,74 @@ TouchDirection CapsuleTouch<Degree>::direction(double tau) const {
     look(normal), look(-normal);
   }
   const double gap = gap_(tau);
-  SegmentWay way = shortest_way(triangle_, centre, half_);
-  const bool inside = way.dimension == 2;
-  // Over the slab of the triangle at an end the face is the nearest, though the slab is wider by some gaps.
-  if (!inside && is_over_face(way.apart, face, radius_, gap)) {
-    way.apart = dot(face, way.apart) * face;
-    way.dimension = 2;
-  }
+  const NearestPart nearest = nearest_part(centre, gap);
+  const Vector3d& apart = nearest.apart;
   const bool through = deepest.separation < 0;
-  if (through || !(way.apart.cwiseAbs().maxCoeff() > 0)) {
+  if (through || !(apart.cwiseAbs().maxCoeff() > 0)) {
     return {deepest.normal, deepest.separation - radius_, through && deepest.approaching};
   }
-  const Vector3d normal = unit_or_zero(way.apart);
-  const double distance = std::sqrt(dot(way.apart, way.apart));
-  const double rate = dot(normal, velocity);
-  // One that has sunk in by a gap approaches however slowly it does.
-  const double tilt = way.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
-  bool approaching = rate < 0;
+  const Vector3d normal = unit_or_zero(apart);
+  const double distance = std::sqrt(dot(apart, apart));
+  const bool inside = shortest_way(triangle_, centre, half_).dimension == 2;
+  bool approaching = false;
   if constexpr (Degree >= 3) {
-    const auto part_of = [](const SegmentWay& to) -> NearestPart {
-      const Vector3d direction = to.dimension == 2   ? unit_or_zero(to.apart)
-                                 : to.dimension == 1 ? unit_or_zero(to.along)
-                                                     : Vector3d(Vector3d::Zero());
-      return {to.apart, to.dimension, direction};
-    };
-    approaching = curve_approaches(motion_, gap, tau, tilt, part_of(way), inside, [&](const Vector3d& place) {
-      return part_of(shortest_way(triangle_, place, half_));
-    });
-  } else if (std::abs(rate) <= speeds[0] + tau * speeds[1] + tilt * norm(velocity)) {
-    // Second derivative of the distance: the path's bend towards the surface exceeds the surface's own curvature, which
-    // is that of the part that the capsule comes to.
-    Vector3d sideways = across(velocity, normal);
-    SegmentWay ahead = way;
-    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) {
-      ahead = shortest_way(triangle_, centre + gap * unit_or_zero(sideways), half_);
-    }
-    if (ahead.dimension == 1) sideways = across(sideways, unit_or_zero(ahead.along));
-    const double round = ahead.dimension == 2 ? 0.0 : dot(sideways, sideways) / distance;
-    const Vector3d acceleration = motion_.acceleration();
-    approaching = dot(normal, acceleration) + round < -speeds[1] - tilt * norm(acceleration);
+    // One that has sunk in by a gap approaches however slowly it does.
+    const double tilt = nearest.dimension == 2 && distance > radius_ - gap ? tilt_of(triangle_) : 0.0;
+    approaching = curve_approaches(motion_, gap, tau, tilt, nearest, inside,
+                                   [&](const Vector3d& place) { return nearest_part(place, 0); });
+  } else {
+    // It may be about to pass from one part to another.
+    NearestPart ahead = nearest;
+    const Vector3d sideways = across(velocity, normal);
+    if (!inside && sideways.cwiseAbs().maxCoeff() > 0) ahead = nearest_part(centre + gap * unit_or_zero(sideways), 0);
+    // Off a face it may be carried by its speed, over its edge: then it approaches neither.
+    approaching = approach_to(ahead).approaching(tau) &&
+                  (nearest.dimension < 2 || inside || approach_to(nearest).approaching(tau));
   }
   return {normal, distance - radius_, approaching};
 }
 
-/// Where the distance to a part of the prism has a maximum while that part is the nearest.
+/// As BallTouch::turning().
 template <int Degree>
 double CapsuleTouch<Degree>::turning(double tau, double end) const {
-  const auto consider = [&](double top, double distance) {
-    const Vector3d apart = shortest_way(triangle_, motion_.position(top), half_).apart;
-    if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
-    end = top;
-    return true;
-  };
-  if constexpr (Degree >= 2) {
+  const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
+  if constexpr (Degree <= 2) {
+    const auto look = [&](const PolyhedronPart& each) {
+      approach_to(each).each_begin(tau, end, [&](double t) {
+        if (!approaching(t)) return false;
+        end = t;
+        return true;
+      });
+    };
+    const auto look_at_both = [&](const Vector3d& at, const Vector3d& normal) {
+      look({at, 2, normal}), look({at, 2, -normal});
+    };
+    for (const double side : {-1.0, 1.0}) look_at_both(corner(0, -side), face);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3d edge = triangle_.edge(i);
+      const Vector3d normal = accurate_cross(edge, half_);
+      if (normal.cwiseAbs().maxCoeff() > 0) look_at_both(corner(i, 0), unit_or_zero(normal));
+      look({corner(i, 0), 1, unit_or_zero(half_)});
+      for (const double side : {-1.0, 1.0}) {
+        look({corner(i, side), 1, unit_or_zero(edge)});
+        look({corner(i, side), 0, Vector3d::Zero()});
+      }
+    }
+  } else {
+    const auto consider = [&](double top, double distance) {
+      const Vector3d apart = shortest_way(triangle_, motion_.position(top), half_).apart;
+      if (!(distance <= std::sqrt(dot(apart, apart)) + gap_(top) / 4)) return false;
+      end = top;
+      return true;
+    };
     const auto consider_plane = [&](const Vector3d& normal, const Vector3d& at) {
       distance_maxima(motion_, normal, at, tau, end, consider);
     };
     const auto consider_line = [&](const Vector3d& at, const Vector3d& along) {
       Path path = from(at);
       for (Vector3d& c : path) c = across(c, along);
-      distance_maxima<Degree>(path, horizon_, tau, end, consider);
+      distance_maxima<Degree>(path, tau, end, consider);
     };
-    const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
     for (const double side : {-1.0, 1.0}) consider_plane(face, corner(0, side));
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3d edge = triangle_.edge(i);
@@ -311,7 +340,7 @@ double CapsuleTouch<Degree>::turning(double tau, double end) const {
       consider_line(corner(i, 0), unit_or_zero(half_));
       for (const double side : {-1.0, 1.0}) {
         consider_line(corner(i, side), unit_or_zero(edge));
-        distance_maxima<Degree>(from(corner(i, side)), horizon_, tau, end, consider);
+        distance_maxima<Degree>(from(corner(i, side)), tau, end, consider);
       }
     }
   }

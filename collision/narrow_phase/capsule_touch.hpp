@@ -5,6 +5,8 @@
 #include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/round_touch.hpp"
+#include "collision/narrow_phase/segment_ways.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 #include "collision/narrow_phase/touch_pieces.hpp"
@@ -73,6 +75,11 @@ class CapsuleTouch {
   bool matters(const Path& path) const;
   SpansOf<Degree> within(const Path& path) const;
   Path from(const Eigen::Vector3d& at) const;
+  NearestPart part_of(const SegmentWay& way) const;
+  NearestPart nearest_part(const Eigen::Vector3d& place, double gap) const;
+  auto approach_to(const PolyhedronPart& part) const requires(Degree <= 2) {
+    return PartApproach<Degree>(part, motion_, radius_, gap_, part.dimension == 2 ? tilt_of(triangle_) : 0.0);
+  }
 
   PlacedTriangle triangle_;
   Eigen::Vector3d half_;

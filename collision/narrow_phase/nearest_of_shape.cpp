@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/nearest_of_shape.hpp"
 
 #include "collision/narrow_phase/nearest_point.hpp"
+#include "collision/narrow_phase/part_groups.hpp"
 #include "collision/shapes/shape_forms.hpp"
 #include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
@@ -11,6 +12,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -139,11 +141,34 @@ NearestOfShape nearest_of_bending_mesh(const MeshScript& script, const Matrix3d&
 }
 
 /// The first of parts that are as near.
-NearestOfShape nearest_of_parts(const std::vector<PlacedShape>& parts, const Vector3d& to) {
-  NearestOfShape nearest = nearest_of_shape(parts.front(), to);
-  for (std::size_t i = 1; i < parts.size(); ++i) {
-    const NearestOfShape of_part = nearest_of_shape(parts[i], to);
-    if (of_part.distance < nearest.distance) nearest = of_part;
+NearestOfShape nearest_of_parts(const PlacedShape& shape, const Vector3d& to) {
+  const std::span<const PlacedShape> parts = parts_of(shape);
+  const PartGroups groups(shape);
+  const double rounding = 0x1p-40 * (shape.bounding_radius + norm(to));
+  const auto bound = [&](std::uint32_t group) {
+    const auto [low, high] = groups.box(group);
+    return norm(to - to.cwiseMax(low).cwiseMin(high)) - rounding;
+  };
+  NearestOfShape nearest{std::numeric_limits<double>::infinity(), Vector3d::Zero()};
+  std::uint32_t number = 0;
+  std::vector<std::pair<double, std::uint32_t>> waiting{{bound(0), 0}};
+  while (!waiting.empty()) {
+    const auto [least, group] = waiting.back();
+    waiting.pop_back();
+    if (least > nearest.distance) continue;
+    if (groups.is_leaf(group)) {
+      groups.each_part(group, [&](std::uint32_t i) {
+        const NearestOfShape of_part = nearest_of_shape(parts[i], to);
+        if (of_part.distance > nearest.distance || (of_part.distance == nearest.distance && i > number)) return;
+        nearest = of_part;
+        number = i;
+      });
+      continue;
+    }
+    const std::uint32_t first = groups.first_child(group);
+    std::array<std::pair<double, std::uint32_t>, 2> children{{{bound(first), first}, {bound(first + 1), first + 1}}};
+    if (children[0].first < children[1].first) std::swap(children[0], children[1]);  // the nearer comes next
+    waiting.insert(waiting.end(), children.begin(), children.end());
   }
   return nearest;
 }
@@ -158,7 +183,7 @@ NearestOfShape nearest_of_shape(const PlacedShape& shape, const Vector3d& to, do
       [&](const MeshShape& mesh) { return nearest_of_mesh(mesh, rotation, to); },
       [&](const BendingMesh& mesh) { return nearest_of_bending_mesh(*mesh.script, rotation, to, t); },
       [&](const HalfSpace&) { return nearest_of_half_space(placed_half_space(shape), to); },
-      [&](const Compound&) { return nearest_of_parts(*shape.parts, to); },
+      [&](const Compound&) { return nearest_of_parts(shape, to); },
   };
   return ask_form(shape.shape, nearest);
 }

@@ -3,68 +3,23 @@
 
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/part_groups.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
-#include "collision/shapes/part_tree.hpp"
+#include "collision/shapes/bending_mesh.hpp"
+#include "collision/shapes/half_space.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace kds::collision {
-
-/// The parts of a compound; any other shape is its own only part.
-inline std::span<const PlacedShape> parts_of(const PlacedShape& shape) {
-  if (shape.parts) return *shape.parts;
-  return {&shape, 1};
-}
-
-/// The parts of a shape in groups of groups: those of its tree, or a single one.
-class PartGroups {
- public:
-  explicit PartGroups(const PlacedShape& shape) : shape_(shape), tree_(part_tree(shape)) {
-    if (tree_ && !shape.rotation.isIdentity(0)) rotation_ = shape.rotation.cwiseAbs();
-  }
-
-  bool has_tree() const { return tree_ != nullptr; }
-  const PlacedShape& shape() const { return shape_; }
-  /// Precondition, here and below where a node is returned: there is a tree.
-  const PartTree::Node& node(std::uint32_t group) const { return tree_->nodes()[group]; }
-  bool is_leaf(std::uint32_t group) const { return !tree_ || node(group).is_leaf(); }
-  std::uint32_t first_child(std::uint32_t group) const { return node(group).first; }
-
-  /// Around the boxes of its parts, in the axes of the world; `least` and `greatest` corner. A box that is turned is
-  /// held by one that is larger; 2^-40 of the size of the shape is far above the roundings of that.
-  std::array<Eigen::Vector3d, 2> box(std::uint32_t group) const {
-    if (group == 0) return {shape_.low, shape_.high};
-    const PartTree::Node& at = node(group);
-    if (rotation_.isZero(0)) return {at.low, at.high};
-    const Eigen::Vector3d centre = shape_.rotation * (0.5 * (at.low + at.high));
-    const Eigen::Vector3d half =
-        rotation_ * (0.5 * (at.high - at.low)) + Eigen::Vector3d::Constant(0x1p-40 * shape_.bounding_radius);
-    return {centre - half, centre + half};
-  }
-
-  /// Calls take(number) for the parts of a leaf.
-  template <class Take>
-  void each_part(std::uint32_t leaf, const Take& take) const {
-    if (tree_) {
-      for (const std::uint32_t part : tree_->parts_of(node(leaf))) take(part);
-    } else {
-      const auto count = static_cast<std::uint32_t>(parts_of(shape_).size());
-      for (std::uint32_t part = 0; part < count; ++part) take(part);
-    }
-  }
-
- private:
-  const PlacedShape& shape_;
-  const PartTree* tree_;
-  Eigen::Matrix3d rotation_ = Eigen::Matrix3d::Zero();  ///< magnitudes; zero of a shape that is not turned
-};
 
 /// The numbers of the parts, in the order of those of a, then of b, in all groups of which may_meet(group of a, group
 /// of b) is true.
@@ -125,8 +80,9 @@ class ListOfPartPairs {
 /// The pairs of parts of two bodies whose boxes may overlap at some time from now to the horizon, in the order of the
 /// parts of a, then of b.
 ///
-/// Boxes of meshes are as far apart as ContactGap reports contact, at the end of the time that is looked at.
-/// Half-spaces and meshes that bend are not looked at: they may meet each part at all times.
+/// Boxes of meshes are as far apart as ContactGap reports contact, at the end of the time that is looked at. The box of
+/// a mesh that bends is that around all its forms, grown by what counts as contact there. Of a half-space it is its
+/// plane that boxes meet.
 ///
 /// Where a body has a tree of parts, the boxes of groups are looked at first, grown by four times the error bound of
 /// QuickMotion: what it answers of a part is true of any group that has it. So the list is the one that a look at each
@@ -142,19 +98,23 @@ class PartPairs : public ListOfPartPairs {
   using Body = TranslatingShape<Degree>;
 
   PartPairs(const Body& a, const Body& b, double now, double horizon)
-      : motion_(a.motion, b.motion, now, horizon, sizes(a.shape, b.shape)) {
-    const bool boxes =
-        !unbounded(a.shape.shape) && !unbounded(b.shape.shape) && !bends(a.shape.shape) && !bends(b.shape.shape);
+      : motion_(a.motion, b.motion, now, horizon, size_of(a.shape) + size_of(b.shape)) {
     for (std::size_t d = 0; d < 3; ++d) along_[d] = motion_.along(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(d)));
-    if (boxes) look_beyond(a.shape, b.shape);
-    if (boxes && (has_mesh(a.shape.shape) || has_mesh(b.shape.shape))) {
+    if (unbounded(a.shape.shape)) plane_ = PlaneOf{placed_half_space(a.shape), 1, {}};
+    if (unbounded(b.shape.shape)) plane_ = PlaneOf{placed_half_space(b.shape), -1, {}};
+    if (plane_) plane_->along = motion_.along(plane_->half_space.normal);
+    look_beyond(a.shape, b.shape);
+    if (!plane_ && (has_mesh(a.shape.shape) || has_mesh(b.shape.shape))) {
       const RelativeMotion<Degree> motion = relative_to(a.motion, b.motion);
       mesh_margin_ = quick_margin * contact_gap(motion, a.shape.bounding_radius + b.shape.bounding_radius)(
                                         std::max(now - motion.epoch, 0.0) + motion_.end());
     }
+    for (const PlacedShape* const shape : {&a.shape, &b.shape}) {
+      if (bends(shape->shape)) bending_margin_ += 4 * bending_tolerance * shape->bounding_radius;
+    }
     const PartGroups groups_a(a.shape), groups_b(b.shape);
     whole_ = motion_.whole();
-    if (boxes && (groups_a.has_tree() || groups_b.has_tree())) {
+    if (groups_a.has_tree() || groups_b.has_tree()) {
       whole_ = whole_ || stand_to_each_other(a.motion, b.motion);
       if (whole_) {
         look_at_groups(groups_a, groups_b, now);
@@ -163,10 +123,10 @@ class PartPairs : public ListOfPartPairs {
     }
     for (const PlacedShape& part_a : parts_of(a.shape)) {
       Pair pair{&part_a, &b.shape, now, never};
-      if (boxes && !clip(pair)) continue;
+      if (!clip(pair)) continue;
       for (const PlacedShape& part_b : parts_of(b.shape)) {
         pair = {&part_a, &part_b, now, never};
-        if (!boxes || clip(pair)) pairs_.push_back(pair);
+        if (clip(pair)) pairs_.push_back(pair);
       }
     }
   }
@@ -187,7 +147,7 @@ class PartPairs : public ListOfPartPairs {
   }
 
   void look_at_groups(const PartGroups& a, const PartGroups& b, double now) {
-    const double grown = 4 * motion_.error() + mesh_margin_;
+    const double grown = 4 * motion_.error() + mesh_margin_ + bending_margin_;
     const auto may_meet = [&](std::uint32_t of_a, std::uint32_t of_b) {
       const auto [low_a, high_a] = a.box(of_a);
       const auto [low_b, high_b] = b.box(of_b);
@@ -208,13 +168,18 @@ class PartPairs : public ListOfPartPairs {
     }
   }
 
-  static double sizes(const PlacedShape& a, const PlacedShape& b) {
-    return (unbounded(a.shape) ? 0 : a.bounding_radius) + (unbounded(b.shape) ? 0 : b.bounding_radius);
+  static double size_of(const PlacedShape& shape) {
+    return unbounded(shape.shape) ? std::abs(placed_half_space(shape).offset) : shape.bounding_radius;
   }
 
   /// Finds out whether the boxes around the bodies never meet again after the last time for which the motion has
   /// answers.
   void look_beyond(const PlacedShape& a, const PlacedShape& b) {
+    if (plane_) {
+      const PlacedShape& other = plane_->side > 0 ? b : a;
+      motion_.note_opening(plane_->along, plane_->side, plane_->half_space.offset - lowest(other.low, other.high));
+      return;
+    }
     for (std::size_t d = 0; d < 3 && !motion_.whole(); ++d) {
       const auto axis = static_cast<Eigen::Index>(d);
       motion_.note_opening(along_[d], 1, a.high[axis] - b.low[axis]);
@@ -222,10 +187,16 @@ class PartPairs : public ListOfPartPairs {
     }
   }
 
+  /// The lowest place of a box along the normal of the plane.
+  double lowest(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const {
+    const Eigen::Vector3d& normal = plane_->half_space.normal;
+    return dot(normal, 0.5 * (low + high)) - dot(normal.cwiseAbs(), 0.5 * (high - low));
+  }
+
   /// Sets the times of a pair. False if its boxes do not meet.
   bool clip(Pair& pair) const {
     const bool mesh = has_mesh(pair.a->shape) || has_mesh(pair.b->shape);
-    const double margin = mesh ? mesh_margin_ : 0;
+    const double margin = (mesh ? mesh_margin_ : 0) + bending_margin_ + (plane_ ? 4 * motion_.error() : 0);
     TimeWindow window{0, motion_.end()};
     const bool meet = boxes_meet(pair.a->low, pair.a->high, pair.b->low, pair.b->high, margin, window);
     if (!meet && whole_) return false;
@@ -237,6 +208,10 @@ class PartPairs : public ListOfPartPairs {
   /// Shrinks the window to times at which two boxes, grown by a margin, may overlap; false if there are none.
   bool boxes_meet(const Eigen::Vector3d& low_a, const Eigen::Vector3d& high_a, const Eigen::Vector3d& low_b,
                   const Eigen::Vector3d& high_b, double margin, TimeWindow& window) const {
+    if (plane_) {
+      const double height = plane_->side > 0 ? lowest(low_b, high_b) : lowest(low_a, high_a);
+      return motion_.clip(plane_->along, plane_->side, plane_->half_space.offset - height + margin, window);
+    }
     bool meet = true;
     for (std::size_t d = 0; d < 3 && meet; ++d) {
       const auto axis = static_cast<Eigen::Index>(d);
@@ -246,9 +221,16 @@ class PartPairs : public ListOfPartPairs {
     return meet;
   }
 
+  struct PlaneOf {
+    HalfSpace half_space;
+    double side;  ///< 1 if it is a, -1 if it is b
+    typename QuickMotion<Degree>::Along along;
+  };
+
   QuickMotion<Degree> motion_;
   std::array<typename QuickMotion<Degree>::Along, 3> along_;
-  double mesh_margin_ = 0;
+  std::optional<PlaneOf> plane_{};  ///< of a half-space, if one of the two is
+  double mesh_margin_ = 0, bending_margin_ = 0;
   bool whole_ = true;  ///< what does not meet until the end of the motion's answers does not meet after it
 };
 

@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/near_spans.hpp"
+#include "collision/narrow_phase/part_approach.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
 #include "collision/vectors.hpp"
@@ -64,11 +65,9 @@ bool may_come_near(const PathCoefficients<Degree>& path, const TimeWindow& windo
   return !(dot(nearest, nearest) > distance * distance);
 }
 
-/// The part of a polyhedron that is nearest to a point: a corner (dimension 0), an edge (1) or a face (2).
-struct NearestPart {
+/// The part of a polyhedron that is nearest to a point.
+struct NearestPart : PolyhedronPart {
   Eigen::Vector3d apart;  ///< the point from there
-  int dimension;
-  Eigen::Vector3d direction;  ///< unit: along an edge, out of a face
 };
 
 /// Whether the middle of something round, which is at `apart` from the edge or corner of a face that is nearest to it,
@@ -133,47 +132,25 @@ bool curve_approaches(const RelativeMotion<Degree>& motion, double gap, double t
   return false;
 }
 
-/// Calls consider(time, distance) for the maxima between tau and end, both excluded, of the distance of a point on a
-/// path from a plane with a unit normal, or from the origin; until it returns true. Straight paths have none.
+/// Degree 3 and above: calls consider(time, distance) for the maxima between tau and end, both excluded, of the
+/// distance of a point on a path from a plane with a unit normal, or from the origin; until it returns true.
 template <int Degree, class Consider>
 void distance_maxima(const RelativeMotion<Degree>& motion, const Eigen::Vector3d& normal, const Eigen::Vector3d& at,
                      double tau, double end, const Consider& consider) {
-  if constexpr (Degree == 2) {
-    const double p1 = dot(normal, motion.coefficients[1]);
-    const double p2 = dot(normal, motion.coefficients[2]);
-    if (p2 == 0) return;
-    const double top = -p1 / (2 * p2);
-    const double height = dot(normal, motion.position(top) - at);
-    if (top > tau && top < end && (height > 0) == (p2 < 0)) consider(top, std::abs(height));
-  }
-  if constexpr (Degree >= 3) {
-    for (const double side : {1.0, -1.0}) {
-      Motion<Degree> height;
-      for (std::size_t i = 0; i <= Degree; ++i) height.position.c[i] = side * dot(normal, motion.coefficients[i]);
-      height.position.c[0] -= side * dot(normal, at);
-      each_maximum(PolynomialCertificate<Degree>{height}, tau, end, [&](double top) {
-        const double above = height(top);
-        return above > 0 && consider(top, above);
-      });
-    }
+  for (const double side : {1.0, -1.0}) {
+    Motion<Degree> height;
+    for (std::size_t i = 0; i <= Degree; ++i) height.position.c[i] = side * dot(normal, motion.coefficients[i]);
+    height.position.c[0] -= side * dot(normal, at);
+    each_maximum(PolynomialCertificate<Degree>{height}, tau, end, [&](double top) {
+      const double above = height(top);
+      return above > 0 && consider(top, above);
+    });
   }
 }
 template <int Degree, class Consider>
-void distance_maxima(const PathCoefficients<Degree>& path, double horizon, double tau, double end,
-                     const Consider& consider) {
-  if constexpr (Degree == 2) {
-    const DistanceQuartic quartic(path, {0, 0, 0});
-    const auto points = quartic.turning_points(horizon);
-    for (std::size_t i = 0; i < points.size; ++i) {
-      const double top = points.at[i];
-      if (!(top > tau && top < end) || !(quartic.bend(top) < 0)) continue;
-      if (consider(top, norm(place_on(path, top)))) end = top;
-    }
-  }
-  if constexpr (Degree >= 3) {
-    each_maximum(FarCurve<Degree>(path, {}), tau, end,
-                 [&](double top) { return consider(top, norm(place_on(path, top))); });
-  }
+void distance_maxima(const PathCoefficients<Degree>& path, double tau, double end, const Consider& consider) {
+  each_maximum(FarCurve<Degree>(path, {}), tau, end,
+               [&](double top) { return consider(top, norm(place_on(path, top))); });
 }
 
 }  // namespace kds::collision

@@ -18,13 +18,15 @@ void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vec
   for (const double end : {-1.0, 1.0}) {
     const Vector3d at = centre + end * half;
     const NearestPoint nearest = nearest_point(triangle, at);
-    visit(SegmentWay{at - nearest.point, nearest.dimension, triangle.edge(nearest.index), end});
+    const Vector3d along =
+        nearest.dimension == 2 ? accurate_cross(triangle.edge(0), triangle.edge(1)) : triangle.edge(nearest.index);
+    visit(SegmentWay{at - nearest.point, nearest.dimension, along, triangle.vertices[nearest.index] - end * half, end});
   }
   const double square = dot(half, half);
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d from = centre - triangle.vertices[i];
     const double part = -dot(from, half) / square;
-    if (std::abs(part) < 1) visit(SegmentWay{from + part * half, 1, half, part});
+    if (std::abs(part) < 1) visit(SegmentWay{from + part * half, 1, half, triangle.vertices[i], part});
     // Where both an edge and the segment are nearest within: the common perpendicular.
     const Vector3d edge = triangle.edge(i);
     const Vector3d normal = accurate_cross(edge, half);
@@ -34,7 +36,7 @@ void every_way(const PlacedTriangle& triangle, const Vector3d& centre, const Vec
     const double on_half = dot(cross(from, edge), normal) / sine_square;
     if (!(on_edge > 0 && on_edge < 1 && std::abs(on_half) < 1)) continue;
     const Vector3d out = unit(normal);
-    visit(SegmentWay{dot(out, from) * out, 2, Vector3d::Zero(), on_half});
+    visit(SegmentWay{dot(out, from) * out, 2, out, triangle.vertices[i], on_half});
   }
 }
 

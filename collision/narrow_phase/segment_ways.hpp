@@ -8,11 +8,12 @@
 namespace kds::collision {
 
 /// A connection from a triangle to a segment. It is perpendicular to nothing (from corner to end), to a line, or to a
-/// plane.
+/// plane: as that from their sum, a prism, to the centre of the segment.
 struct SegmentWay {
   Eigen::Vector3d apart = Eigen::Vector3d::Zero();
   int dimension = 0;
-  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< of a line; not unit
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();  ///< of a line, or across a plane; not unit
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();     ///< where the centre would be, anywhere on the line or plane
   double part = 0;                                  ///< where on the segment it ends: from -1 to 1
 };
 

@@ -1,6 +1,7 @@
 #include "collision/narrow_phase/shape_distance.hpp"
 
 #include "collision/narrow_phase/hull_distance.hpp"
+#include "collision/narrow_phase/part_groups.hpp"
 #include "collision/shapes/rounded_core.hpp"
 #include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
@@ -8,6 +9,7 @@
 #include <boost/container/small_vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -154,7 +156,7 @@ Convex rounded(const PlacedShape& shape, const Vector3d& centre) {
   return Convex(std::move(corners), core.radius);
 }
 
-/// Precondition: no half-space.
+/// What a part of a compound, or a shape that is none, is made of. Precondition: no half-space.
 void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::vector<Part>& parts) {
   const auto place_of = [&](const Vector3d& x) -> Vector3d { return centre + placed_vertex(shape.rotation, 1, x); };
   const auto of_box = [&](const RoundedBox&) { parts.emplace_back(rounded(shape, centre)); };
@@ -171,16 +173,81 @@ void add_parts(const PlacedShape& shape, const Vector3d& centre, double t, std::
       parts.emplace_back(Convex(std::move(corners)));
     }
   };
-  const auto of_compound = [&](const Compound&) {
-    for (const PlacedShape& part : *shape.parts) add_parts(part, centre, t, parts);
-  };
+  const auto of_compound = [](const Compound&) { throw std::logic_error("shape_distance: a compound in another"); };
   const auto of_half_space = [](const HalfSpace&) { throw std::logic_error("shape_distance: parts of a half-space"); };
   ask_form(shape.shape, ByForm{of_box, of_hull, of_mesh, of_bending_mesh, of_compound, of_half_space});
 }
 
+/// The parts of a shape about a centre in groups, each made when it is looked at.
+class Parts {
+ public:
+  /// Of a mesh that bends, where it is at the time t.
+  Parts(const PlacedShape& shape, const Vector3d& centre, double t)
+      : groups_(shape), centre_(centre), t_(t), parts_(parts_of(shape).size()) {}
+
+  const PartGroups& groups() const { return groups_; }
+  std::array<Vector3d, 2> box(std::uint32_t group) const {
+    auto [low, high] = groups_.box(group);
+    return {low + centre_, high + centre_};
+  }
+  const std::vector<Part>& operator[](std::uint32_t i) {
+    if (parts_[i].empty()) add_parts(parts_of(groups_.shape())[i], centre_, t_, parts_[i]);
+    return parts_[i];
+  }
+  /// Of what a box is rounded by.
+  double rounding() const { return 0x1p-40 * (groups_.shape().bounding_radius + norm(centre_)); }
+
+ private:
+  PartGroups groups_;
+  Vector3d centre_;
+  double t_;
+  std::vector<std::vector<Part>> parts_;
+};
+
 /// Keeps the nearest points of many pairs of parts.
 class NearestParts {
  public:
+  /// Goes down the groups of both, the nearer boxes first.
+  void take(Parts& a, Parts& b) {
+    struct Groups {
+      double bound;
+      std::uint32_t of_a, of_b;
+    };
+    const auto groups = [&](std::uint32_t of_a, std::uint32_t of_b) {
+      const auto [low_a, high_a] = a.box(of_a);
+      const auto [low_b, high_b] = b.box(of_b);
+      const Vector3d apart = (low_a - high_b).cwiseMax(low_b - high_a).cwiseMax(0);
+      return Groups{norm(apart) - a.rounding() - b.rounding(), of_a, of_b};
+    };
+    const auto size = [](Parts& parts, std::uint32_t group) {
+      const auto [low, high] = parts.groups().box(group);
+      return parts.groups().is_leaf(group) ? -1 : squared_norm(high - low);
+    };
+    std::vector<Groups> waiting{groups(0, 0)};
+    while (!waiting.empty()) {
+      const auto [bound, of_a, of_b] = waiting.back();
+      waiting.pop_back();
+      if (too_far(bound)) continue;
+      const double size_a = size(a, of_a), size_b = size(b, of_b);
+      if (size_a < 0 && size_b < 0) {
+        a.groups().each_part(of_a, [&](std::uint32_t i) {
+          b.groups().each_part(of_b, [&](std::uint32_t j) {
+            for (const Part& part_a : a[i]) {
+              for (const Part& part_b : b[j]) take(part_a, part_b);
+            }
+          });
+        });
+        continue;
+      }
+      const bool divides_a = size_a >= size_b;
+      const std::uint32_t first = divides_a ? a.groups().first_child(of_a) : b.groups().first_child(of_b);
+      Groups left = divides_a ? groups(first, of_b) : groups(of_a, first);
+      Groups right = divides_a ? groups(first + 1, of_b) : groups(of_a, first + 1);
+      if (left.bound < right.bound) std::swap(left, right);  // the nearer comes next
+      waiting.insert(waiting.end(), {left, right});
+    }
+  }
+
   /// Goes down both trees, the nearer boxes first.
   void take(const Part& a, const Part& b) {
     std::vector<Pair> waiting;
@@ -276,12 +343,31 @@ LowestOfParts lowest_of(const Part& part, const Vector3d& normal) {
 
 /// Of a shape about the origin, b, from a half-space, a.
 ShapeDistance distance_from_half_space(const HalfSpace& half_space, const PlacedShape& shape, double t) {
-  std::vector<Part> parts;
-  add_parts(shape, Vector3d::Zero(), t, parts);
+  Parts parts(shape, Vector3d::Zero(), t);
+  const auto lowest_of_box = [&](std::uint32_t group) {
+    const auto [low, high] = parts.box(group);
+    const Vector3d& normal = half_space.normal;
+    return dot(normal, 0.5 * (low + high)) - dot(normal.cwiseAbs(), 0.5 * (high - low)) - parts.rounding();
+  };
   LowestOfParts lowest;
-  for (const Part& part : parts) {
-    if (const LowestOfParts of_part = lowest_of(part, half_space.normal); of_part.height < lowest.height)
-      lowest = of_part;
+  std::vector<std::pair<double, std::uint32_t>> waiting{{lowest_of_box(0), 0}};
+  while (!waiting.empty()) {
+    const auto [height, group] = waiting.back();
+    waiting.pop_back();
+    if (!(height < lowest.height)) continue;
+    if (parts.groups().is_leaf(group)) {
+      parts.groups().each_part(group, [&](std::uint32_t i) {
+        for (const Part& part : parts[i]) {
+          if (const LowestOfParts of_part = lowest_of(part, half_space.normal); of_part.height < lowest.height)
+            lowest = of_part;
+        }
+      });
+      continue;
+    }
+    const std::uint32_t first = parts.groups().first_child(group);
+    std::pair left{lowest_of_box(first), first}, right{lowest_of_box(first + 1), first + 1};
+    if (left.first < right.first) std::swap(left, right);  // the lower comes next
+    waiting.insert(waiting.end(), {left, right});
   }
   const double distance = std::max(0.0, lowest.height - half_space.offset);
   return {distance, lowest.point - distance * half_space.normal, lowest.point};
@@ -325,13 +411,9 @@ ShapeDistance shape_distance(const PlacedShape& a, const PlacedShape& b, const V
     found.of_b += centre_of_b;
     return found;
   }
-  std::vector<Part> of_a, of_b;
-  add_parts(a, Vector3d::Zero(), t, of_a);
-  add_parts(b, centre_of_b, t, of_b);
+  Parts of_a(a, Vector3d::Zero(), t), of_b(b, centre_of_b, t);
   NearestParts nearest;
-  for (const Part& part_of_a : of_a) {
-    for (const Part& part_of_b : of_b) nearest.take(part_of_a, part_of_b);
-  }
+  nearest.take(of_a, of_b);
   return nearest.best();
 }
 

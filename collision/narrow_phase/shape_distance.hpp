@@ -22,7 +22,8 @@ struct ShapeDistance {
 /// of shapes.
 ///
 /// Cost: of two convex shapes a dozen looks at their corners; of meshes such looks at the boxes of their trees and at
-/// triangles, as many as are nearly nearest; of a mesh that bends at each triangle, and of a half-space at each vertex.
+/// triangles, as many as are nearly nearest; of compounds at the boxes around groups of their parts, and at parts that
+/// are nearly nearest; of a mesh that bends at each triangle.
 ShapeDistance shape_distance(const PlacedShape& a, const PlacedShape& b, const Eigen::Vector3d& centre_of_b,
                              double t = 0);
 

@@ -295,6 +295,9 @@ Contact Pairs<Motion>::contact(BodySlot a, BodySlot b, double t, const FoundTouc
   if (of_a.radius > 0 && of_b.radius > 0) {
     return ball_contact_at(of_a.motion, of_b.motion, of_a.radius, t);
   }
+  if constexpr (!turns<Motion>) {
+    if (resting_.find(a, b) != Resting::none) return resting_.contact_at(a, b, t, found);
+  }
   return contact_at(bodies_.moving(a), bodies_.moving(b), t, found);
 }
 

@@ -1,6 +1,7 @@
 // Resting contacts: which there are, when their bodies may meet elsewhere, and when they end.
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/piecewise_contact.hpp"
 #include "collision/vectors.hpp"
 
 #include <algorithm>
@@ -236,7 +237,19 @@ ContactEstimate RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id
   const auto found = [&](double t) {
     return t <= until || until == horizon ? ContactEstimate{t, true} : ContactEstimate{until, false};
   };
-  const double began = std::max(a.motion.start, b.motion.start);
+  const Vector3d away = moved_away(id_a, id_b);
+  const double t = first(away);
+  if (!away.isZero(0) || t != from) return found(t);
+  contacts_[find(id_a, id_b)].left_behind = std::max(a.motion.start, b.motion.start);
+  return found(first(moved_away(id_a, id_b)));
+}
+
+/// By how much the second of two bodies that rest on each other, one of them concave, is moved away from the contacts
+/// that last where their next one is sought.
+template <class Motion>
+Vector3d RestingContacts<Motion>::moved_away(BodySlot id_a, BodySlot id_b) const {
+  const auto &a = bodies_.path(id_a), &b = bodies_.path(id_b);
+  const double began = std::max(a.start, b.start);
   Vector3d out = Vector3d::Zero();
   bool left_behind = false;
   for (const Slot slot : fewer(id_a, id_b)) {
@@ -244,17 +257,30 @@ ContactEstimate RestingContacts<Motion>::next_contact(BodySlot id_a, BodySlot id
     out += contacts_[slot].normal;
     left_behind = left_behind || contacts_[slot].left_behind == began;
   }
+  const double size_a = bodies_[id_a].bounding_radius, size_b = bodies_[id_b].bounding_radius;
   // In a cluster the approach that the solver's sweeps leave is no contact.
-  if (clustered(id_a) || clustered(id_b)) return found(first(approach_slack * size * out));
-  if (!left_behind) {
-    const double t = first(Vector3d::Zero());
-    if (t != from) return found(t);
-    contacts_[find(id_a, id_b)].left_behind = began;
-  }
-  const double coordinates =
-      a.motion.position(began).cwiseAbs().maxCoeff() + b.motion.position(began).cwiseAbs().maxCoeff();
-  const double sizes = a.shape.bounding_radius + b.shape.bounding_radius;
-  return found(first(coordinate_slack * (sizes + coordinates) * out));
+  if (clustered(id_a) || clustered(id_b)) return approach_slack * std::min(size_a, size_b) * out;
+  if (!left_behind) return Vector3d::Zero();
+  const double coordinates = a.position(began).cwiseAbs().maxCoeff() + b.position(began).cwiseAbs().maxCoeff();
+  return coordinate_slack * (size_a + size_b + coordinates) * out;
+}
+
+/// Where the next contact was sought with bodies moved away from those that last, they may not approach at any place
+/// where they touch as they are: then it is the one that was found.
+template <class Motion>
+collision::Contact RestingContacts<Motion>::contact_at(BodySlot id_a, BodySlot id_b, double t,
+                                                       const FoundTouch& found) const {
+  const auto a = bodies_.moving(id_a);
+  const auto b = bodies_.moving(id_b);
+  const collision::Contact contact = collision::contact_at(a, b, t, found);
+  if (bodies_.unbounded(id_a) || bodies_.unbounded(id_b)) return contact;
+  if (!concave(a.shape.shape) && !concave(b.shape.shape)) return contact;
+  const Vector3d away = moved_away(id_a, id_b);
+  if (away.isZero(0) || approaching(contact, a, b)) return contact;
+  const Motion farther = shifted(b.motion, away);
+  const MovingShape<Motion> moved{b.shape, farther};
+  const collision::Contact other = collision::contact_at(a, moved, t);
+  return approaching(other, a, moved) ? other : contact;
 }
 
 /// A resting contact ends when the bodies have slid off each other, or have parted by `slack`.

@@ -166,6 +166,8 @@ class RestingContacts {
   /// When two bodies that rest on each other meet elsewhere, from a time on; or, where one of them is a mesh, how far
   /// ahead that was looked for. Then it is asked again with that time.
   ContactEstimate next_contact(BodySlot a, BodySlot b, double from);
+  /// How two bodies that rest on each other touch at t.
+  collision::Contact contact_at(BodySlot a, BodySlot b, double t, const FoundTouch& found) const;
 
   /// When the next contact ends, by sliding off or parting; process() ends it.
   double next_time() const {
@@ -293,6 +295,7 @@ class RestingContacts {
   /// When a contact ends; `never` if that is not known.
   double release(Slot slot) const { return contacts_[slot].unfinished ? never : releases_.time(slot); }
   bool alone_on_face(const Contact& contact) const;
+  Eigen::Vector3d moved_away(BodySlot a, BodySlot b) const;
 
   // resting_islands.cpp
   void solve_all();
