@@ -1,5 +1,6 @@
 // Groups of bodies that rest, or may come to rest: which there are, what holds them, and which of them an impact moves.
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -192,6 +194,29 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, 
     leave(std::move(out));
   }
   return group;
+}
+
+/// The velocity with which a fixed body slides below what is carried, if it is a half-space that does so.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slides_under(BodySlot slot, const Carrier& carrier) const {
+  if (!bodies_.fixed(slot) || !bodies_.unbounded(slot)) return std::nullopt;
+  const Motion& motion = bodies_.motion(slot);
+  return turning_rest::slides_under(carrier, half_space_of(*bodies_[slot].shape, motion), motion);
+}
+
+/// Whether a fixed body can bear for good what is carried, moving with the carrier or sliding below.
+template <class Motion>
+bool TurningRest<Motion>::stays_below(BodySlot slot, const Carrier& carrier) const {
+  return moves_with(bodies_.motion(slot), carrier) || slides_under(slot, carrier);
+}
+
+/// The velocity of the second of two bodies, seen from the first, where one is carried and the other slides below it.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slip(Key key, const Carrier& carrier) const {
+  if (bodies_.fixed(key.second)) return slides_under(key.second, carrier);
+  auto found = slides_under(key.first, carrier);
+  if (found) *found = -*found;
+  return found;
 }
 
 /// The group of a body: all bodies that are linked with it by places where they touch, and the forces that are possible
