@@ -76,13 +76,15 @@ bool TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
 }
 
 /// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
-/// whole bodies count, since the corners of a body that rocks slide to and fro.
+/// whole bodies count, since the corners of a body that rocks slide to and fro; and on what slides below it, `away`,
+/// how it moves besides.
 template <class Motion>
-bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
+bool TurningRest<Motion>::slides(Key key, const Vector3d& normal, const std::optional<Vector3d>& away) const {
   const Motion& a = bodies_.motion(key.first);
   const Motion& b = bodies_.motion(key.second);
   const Scale scale = this->scale(key);
-  const Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  if (away) way += *away;
   const double turn = dot(a.angular_velocity - b.angular_velocity, normal);
   const double slip = norm(way - dot(way, normal) * normal) + std::abs(turn) * scale.size;
   return slip > smooth_slip * calm_speed(scale);
@@ -260,7 +262,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
           if (!bodies_.fixed(other)) places.push_back(of_[other].place);
         };
         if (!rests && bodies_.fixed(other) && !stays_below(other, of_[slot].carrier)) list(busy);
-        if (!rests && !slip && (friction == 0 || smooth) && slides(key, place.normal)) list(group.sliding);
+        if (!rests && (friction == 0 || smooth) && slides(key, place.normal, slip)) list(group.sliding);
         Vector3d x = slip ? point_of(place, a, b, bodies_.fixed(key.first)) : Vector3d(0.5 * (on_a + on_b));
         for (const auto& [slot_of, frame] : {std::pair<BodySlot, const BodyFrame&>{key.first, a}, {key.second, b}}) {
           if (slip || bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;
