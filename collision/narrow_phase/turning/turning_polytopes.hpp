@@ -4,20 +4,16 @@
 #include "certificates/turning/edge_edge_separation.hpp"
 #include "certificates/turning/normal_along_edge.hpp"
 #include "certificates/turning/rigid_motion.hpp"
-#include "certificates/turning/turned_vector.hpp"
 #include "certificates/turning/vertex_face_separation.hpp"
 #include "collision/narrow_phase/hull_distance.hpp"
 #include "collision/narrow_phase/turning/pair_frame.hpp"
+#include "collision/narrow_phase/turning/parallel_edges.hpp"
 #include "collision/narrow_phase/turning/seen_polytope.hpp"
-#include "kds/arithmetic/exact.hpp"
-#include "kds/arithmetic/plain_number.hpp"
-#include "kds/turning/turning_sum.hpp"
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -125,8 +121,6 @@ class TurningPolytopes {
     bool forward;  ///< the product of the edges, lower end to higher, points from a to b
   };
 
-  static constexpr double maybe_parallel = 0x1p-46;  ///< unit vectors are known to 2^-50
-
   static bool has_face(std::uint32_t face) { return face != HullStructure::no_face; }
   int faces_a() const { return static_cast<int>(polytope_a_.structure->faces.size()); }
   int faces() const { return faces_a() + static_cast<int>(polytope_b_.structure->faces.size()); }
@@ -176,13 +170,9 @@ class TurningPolytopes {
   TurningPolytope polytope_a_, polytope_b_;
 
  private:
-  /// By edges, their directions in the axes of the world if they are known to keep them for all time, since the body
-  /// does not turn, or turns about them; zero for the others.
-  static std::vector<Eigen::Vector3d> steady_directions(const RigidMotion& motion, const TurningPolytope& polytope);
-  bool are_parallel_at_start(std::size_t of_a, std::size_t of_b) const;
-
   bool turned_alike_;
-  mutable std::optional<std::array<std::vector<Eigen::Vector3d>, 2>> steady_;  ///< of a and b, if they are asked for
+  /// steady_directions() of a and b, once they are asked for.
+  mutable std::optional<std::array<std::vector<Eigen::Vector3d>, 2>> steady_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -379,55 +369,14 @@ bool TurningPolytopes<Degree>::known_to_separate_nothing(int way) const {
   return stay_parallel(pair.of_a, pair.of_b);
 }
 
-/// Of bodies that are turned alike at all times edges that are parallel in their bodies are so for good; and so are
-/// edges that keep their directions and are parallel at first.
 template <int Degree>
 bool TurningPolytopes<Degree>::stay_parallel(std::size_t of_a, std::size_t of_b) const {
-  if (turned_alike_) {
-    if (norm(cross(polytope_a_.edges()[of_a], polytope_b_.edges()[of_b])) > maybe_parallel) return false;
-    const auto u = polytope_a_.edge(of_a), v = polytope_b_.edge(of_b);
-    const auto n = certificates::cross(certificates::difference_of<Exact>(u[0], u[1]),
-                                       certificates::difference_of<Exact>(v[0], v[1]));
-    return std::all_of(n.begin(), n.end(), [](const Exact& x) { return x.sign() == 0; });
-  }
+  using namespace parallel_edges;
+  if (turned_alike_) return are_parallel(polytope_a_, of_a, polytope_b_, of_b);
   if (!steady_) steady_ = {steady_directions(a_, polytope_a_), steady_directions(b_, polytope_b_)};
   const Eigen::Vector3d &u = (*steady_)[0][of_a], &v = (*steady_)[1][of_b];
-  if (u.isZero(0) || v.isZero(0) || norm(cross(u, v)) > maybe_parallel) return false;
-  return are_parallel_at_start(of_a, of_b);
-}
-
-/// Axes and edges along an axis of coordinates have components that are zero, which doubles tell exactly, whatever bits
-/// the corners have. Others are rounded, and so are hardly ever parallel: of these nothing is said.
-template <int Degree>
-std::vector<Eigen::Vector3d> TurningPolytopes<Degree>::steady_directions(const RigidMotion& motion,
-                                                                         const TurningPolytope& polytope) {
-  const Eigen::Quaterniond turned = motion.orientation.normalized();
-  const Eigen::Vector3d axis = motion.angular_velocity.normalized();
-  const certificates::Turner<PlainNumber> turner(motion);
-  const auto spin = certificates::vector_of<PlainNumber>(motion.angular_velocity);
-  std::vector<Eigen::Vector3d> steady;
-  for (std::size_t e = 0; e < polytope.edges().size(); ++e) {
-    const Eigen::Vector3d along = turned * polytope.edges()[e];
-    const auto keeps_direction = [&] {
-      if (motion.spin().still()) return true;
-      if (norm(cross(along, axis)) > maybe_parallel) return false;
-      const auto [from, to] = polytope.edge(e);
-      return kds::detail::is_known_zero(
-          certificates::cross(spin, turner.at_start(certificates::difference_of<PlainNumber>(from, to))));
-    };
-    steady.push_back(keeps_direction() ? along : Eigen::Vector3d(Eigen::Vector3d::Zero()));
-  }
-  return steady;
-}
-
-template <int Degree>
-bool TurningPolytopes<Degree>::are_parallel_at_start(std::size_t of_a, std::size_t of_b) const {
-  const auto at_start = [](const RigidMotion& motion, const std::array<Eigen::Vector3d, 2>& edge) {
-    return certificates::Turner<PlainNumber>(motion).at_start(
-        certificates::difference_of<PlainNumber>(edge[0], edge[1]));
-  };
-  return kds::detail::is_known_zero(
-      certificates::cross(at_start(a_, polytope_a_.edge(of_a)), at_start(b_, polytope_b_.edge(of_b))));
+  if (u.isZero(0) || v.isZero(0) || !maybe_parallel(u, v)) return false;
+  return known_parallel_at_start(a_, polytope_a_.edge(of_a), b_, polytope_b_.edge(of_b));
 }
 
 /// Towards the middle of its corners, which is inside, by a part of the way.

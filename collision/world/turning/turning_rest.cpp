@@ -1,7 +1,6 @@
 #include "collision/world/turning/turning_rest.hpp"
 
 #include "collision/motions.hpp"
-#include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape_forms.hpp"
@@ -220,29 +219,6 @@ double TurningRest<Motion>::holding_distance(const Scale& scale) const {
 template <class Motion>
 double TurningRest<Motion>::calm_speed(const Scale& scale) const {
   return std::sqrt(calm_energy * scale.acceleration * holding_distance(scale));
-}
-
-/// The velocity with which a fixed body slides below what is carried, if it is a half-space that does so.
-template <class Motion>
-std::optional<Vector3d> TurningRest<Motion>::slides_under(BodySlot slot, const Carrier& carrier) const {
-  if (!bodies_.fixed(slot) || !bodies_.unbounded(slot)) return std::nullopt;
-  const Motion& motion = bodies_.motion(slot);
-  return turning_rest::slides_under(carrier, half_space_of(*bodies_[slot].shape, motion), motion);
-}
-
-/// Whether a fixed body can bear for good what is carried, moving with the carrier or sliding below.
-template <class Motion>
-bool TurningRest<Motion>::stays_below(BodySlot slot, const Carrier& carrier) const {
-  return moves_with(bodies_.motion(slot), carrier) || slides_under(slot, carrier);
-}
-
-/// The velocity of the second of two bodies, seen from the first, where one is carried and the other slides below it.
-template <class Motion>
-std::optional<Vector3d> TurningRest<Motion>::slip(Key key, const Carrier& carrier) const {
-  if (bodies_.fixed(key.second)) return slides_under(key.second, carrier);
-  auto found = slides_under(key.first, carrier);
-  if (found) *found = -*found;
-  return found;
 }
 
 /// How that moves what two bodies that touch lie on: the fixed one of them, and what the others lie on that have

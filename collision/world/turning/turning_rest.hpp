@@ -263,7 +263,7 @@ class TurningRest {
   bool stays_below(BodySlot slot, const turning_rest::Carrier& carrier) const;
   std::optional<Eigen::Vector3d> slip(Key key, const turning_rest::Carrier& carrier) const;
   bool calm(BodySlot slot, double acceleration, const turning_rest::Carrier& carrier) const;
-  bool slides(Key key, const Eigen::Vector3d& normal) const;
+  bool slides(Key key, const Eigen::Vector3d& normal, const std::optional<Eigen::Vector3d>& away) const;
   void note_what_slides_on(Group& group, const MobilityOf& mobility) const;
   void note(Key key, const collision::Contact& contact, const turning_rest::Carrier& carrier);
   Group find_group(BodySlot first, bool resting = false);

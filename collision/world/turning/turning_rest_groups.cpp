@@ -1,5 +1,6 @@
 // Groups of bodies that rest, or may come to rest: which there are, what holds them, and which of them an impact moves.
 #include "collision/motions.hpp"
+#include "collision/narrow_phase/half_space_of.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -74,13 +76,15 @@ bool TurningRest<Motion>::strike(BodySlot a, const Vector3d& turn_a, BodySlot b,
 }
 
 /// Whether two bodies that touch without friction slide on each other, or turn about the normal. The velocities of the
-/// whole bodies count, since the corners of a body that rocks slide to and fro.
+/// whole bodies count, since the corners of a body that rocks slide to and fro; and on what slides below it, `away`,
+/// how it moves besides.
 template <class Motion>
-bool TurningRest<Motion>::slides(Key key, const Vector3d& normal) const {
+bool TurningRest<Motion>::slides(Key key, const Vector3d& normal, const std::optional<Vector3d>& away) const {
   const Motion& a = bodies_.motion(key.first);
   const Motion& b = bodies_.motion(key.second);
   const Scale scale = this->scale(key);
-  const Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  Vector3d way = a.path.velocity(clock_.now) - b.path.velocity(clock_.now);
+  if (away) way += *away;
   const double turn = dot(a.angular_velocity - b.angular_velocity, normal);
   const double slip = norm(way - dot(way, normal) * normal) + std::abs(turn) * scale.size;
   return slip > smooth_slip * calm_speed(scale);
@@ -194,6 +198,29 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::held_part(Group group, 
   return group;
 }
 
+/// The velocity with which a fixed body slides below what is carried, if it is a half-space that does so.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slides_under(BodySlot slot, const Carrier& carrier) const {
+  if (!bodies_.fixed(slot) || !bodies_.unbounded(slot)) return std::nullopt;
+  const Motion& motion = bodies_.motion(slot);
+  return turning_rest::slides_under(carrier, half_space_of(*bodies_[slot].shape, motion), motion);
+}
+
+/// Whether a fixed body can bear for good what is carried, moving with the carrier or sliding below.
+template <class Motion>
+bool TurningRest<Motion>::stays_below(BodySlot slot, const Carrier& carrier) const {
+  return moves_with(bodies_.motion(slot), carrier) || slides_under(slot, carrier);
+}
+
+/// The velocity of the second of two bodies, seen from the first, where one is carried and the other slides below it.
+template <class Motion>
+std::optional<Vector3d> TurningRest<Motion>::slip(Key key, const Carrier& carrier) const {
+  if (bodies_.fixed(key.second)) return slides_under(key.second, carrier);
+  auto found = slides_under(key.first, carrier);
+  if (found) *found = -*found;
+  return found;
+}
+
 /// The group of a body: all bodies that are linked with it by places where they touch, and the forces that are possible
 /// at these places.
 template <class Motion>
@@ -235,7 +262,7 @@ typename TurningRest<Motion>::Group TurningRest<Motion>::find_group(BodySlot fir
           if (!bodies_.fixed(other)) places.push_back(of_[other].place);
         };
         if (!rests && bodies_.fixed(other) && !stays_below(other, of_[slot].carrier)) list(busy);
-        if (!rests && !slip && (friction == 0 || smooth) && slides(key, place.normal)) list(group.sliding);
+        if (!rests && (friction == 0 || smooth) && slides(key, place.normal, slip)) list(group.sliding);
         Vector3d x = slip ? point_of(place, a, b, bodies_.fixed(key.first)) : Vector3d(0.5 * (on_a + on_b));
         for (const auto& [slot_of, frame] : {std::pair<BodySlot, const BodyFrame&>{key.first, a}, {key.second, b}}) {
           if (slip || bodies_.fixed(slot_of) || !(bodies_.mover(slot_of).radius > 0)) continue;

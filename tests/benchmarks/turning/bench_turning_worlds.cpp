@@ -1,5 +1,6 @@
 // Worlds of cubes, rods and rings that turn, with one moment of inertia and with their own, beside the same without
-// spin. bench_turning_worlds [FOLDER [SCENE]]: of a scene alone one run.
+// spin, and planar ones. bench_turning_worlds [FOLDER [SCENE]]: of a scene alone one run.
+#include "collision/shapes/compound.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/world.hpp"
 #include "tests/benchmarks/csv_file.hpp"
@@ -88,6 +89,33 @@ void run(std::FILE* csv, const char* name, const Scene& scene) {
                static_cast<unsigned long long>(counters.pair_tests));
 }
 
+/// Something that lies about on the part of a compound that is turned about the axis of turning: all is planar.
+void run_planar(std::FILE* csv, const char* name, const Shape& shape) {
+  if (!only.empty() && only != name) return;
+  found = true;
+  const auto motion = [](const Vector3d& place, const Vector3d& acceleration, double rate) {
+    certificates::RigidMotion<2> result{{{place, Vector3d::Zero(), 0.5 * acceleration}}};
+    result.angular_velocity = {0, 0, rate};
+    return result;
+  };
+  const CompoundPart plate{Box{Vector3d(2, 0.1, 1)}, Vector3d::Zero(), {std::cos(0.05), 0, 0, std::sin(0.05)}};
+  const double start = benchmarks::thread_seconds();
+  TurningWorld<2> world({.response = Response::elastic});
+  for (const bool fixed : {true, false}) {
+    world.add_body({.shape = fixed ? Shape(compound(std::vector{plate})) : shape,
+                    .motion = {fixed ? motion({0, 0, 0}, {0, 0, 0}, 0.1) : motion({0.2, 0.5, 0}, {0, -9.8, 0}, 0)},
+                    .fixed = fixed,
+                    .restitution = 0.3,
+                    .friction = 0.5});
+  }
+  world.advance_to(0.6);
+  const double seconds = benchmarks::thread_seconds() - start;
+  const auto contacts = static_cast<unsigned long long>(world.counters().contacts);
+  std::printf("%-34s %8.2f ms, %6llu contacts\n", name, 1e3 * seconds, contacts);
+  std::fprintf(csv, "%s,2,0,0.1,%.3f,%llu,%llu\n", name, 1e3 * seconds, contacts,
+               static_cast<unsigned long long>(world.counters().pair_tests));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,6 +168,14 @@ int main(int argc, char** argv) {
     run<TurningWorld<1>>(csv, "rings that precess at 1 rad/s", {1000, packing, ring, flat, 1, seconds, true});
     run<TurningWorld<1>>(csv, "rings that precess at 10 rad/s", {1000, packing, ring, flat, 10, seconds, true});
   }
+  std::printf("planar: on a plate of a compound that is turned about the common axis, 0.6 s\n");
+  std::vector<Vector3d> prism;
+  for (int i = 0; i < 7; ++i) {
+    const double angle = 2 * std::acos(-1.0) * i / 7;
+    for (const double z : {-0.3, 0.3}) prism.emplace_back(0.25 * std::cos(angle), 0.25 * std::sin(angle), z);
+  }
+  run_planar(csv, "planar: a box", Box{Vector3d(0.25, 0.2, 0.3)});
+  run_planar(csv, "planar: a prism of seven sides", convex_hull(prism));
   if (!found) return std::fprintf(stderr, "bench_turning_worlds: there is no scene '%s'\n", only.c_str()), 2;
   return std::fclose(csv) == 0 ? 0 : 1;
 }
