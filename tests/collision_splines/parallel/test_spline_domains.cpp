@@ -106,6 +106,26 @@ TEST_CASE("Domains: bodies on cubics that lean on each other have the events of 
   CHECK(seen.rests > 50);
 }
 
+TEST_CASE("Domains: balls on cubics slide off a floor beyond the time for which events were predicted", "[parallel]") {
+  const auto fill = [](World<3>& world) {
+    world.add_body(tests::fixed_body<3>(Box{{3, 30, 1}}, tests::motion<3>({0, 0, -1})));
+    for (int i = 0; i < 24; ++i) {
+      auto ball =
+          tests::ball<3>(0.5, {i % 2 - 0.5, 2.0 * i - 24, 0.5}, {(i % 2 - 0.5) * (2 + 0.25 * i), 0, 0}, {0, 0, -5});
+      ball.motion[0].coefficients[3] = Vector3d(0, 0, 0.25);  // Nothing presses it on the floor after 3.3 s.
+      world.add_body(ball);
+    }
+  };
+  WorldOptions options = tests::with_response(Response::elastic);
+  options.window = 0.5;
+  Seen seen;
+  Manner manner{.parallel = {}, .polls = 3};
+  manner.parallel.threads = 2, manner.parallel.domains = 2, manner.parallel.halo = 1;
+  compare_runs<certificates::PointMotion<3>>({options, fill, 2, "sliding off"}, manner, seen);
+  CHECK(seen.divided == 1);
+  CHECK(seen.rests > 24);
+}
+
 TEST_CASE("Domains: satellites on streams of quintics pass each other", "[parallel]") {
   const auto fill = [](World<5>& world) {
     Random random(8);
