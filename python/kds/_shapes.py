@@ -32,7 +32,11 @@ def capsule(radius: float, half_length: float) -> Shape:
 
 def hull(points: ArrayLike) -> Shape:
     """The solid convex hull of points (n, 3), about the origin as the body's centre. They must not lie in a plane."""
-    return _kds.hull(doubles("points", points, (None, 3)))
+    corners = doubles("points", points, (None, 3))
+    try:
+        return _kds.hull(corners)
+    except ValueError as error:
+        raise ValueError(f"points: {error}") from None
 
 
 def half_space(normal: ArrayLike, offset: float = 0.0) -> Shape:

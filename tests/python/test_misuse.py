@@ -35,6 +35,11 @@ class Misuse(unittest.TestCase):
         self.refused(r"shapes: must be given, or else radii", lambda: w.add_bodies(None, n3))
         self.refused(r"shapes: must be given, or else radii", lambda: w.add_bodies(self.ball, n3, radii=1))
 
+    def test_points_of_hulls(self):
+        self.refused(r"^points: has 3 points; a solid takes at least 4$", lambda: kds.hull(np.eye(3)))
+        self.refused(r"^points: has no volume: all points lie in a plane$", lambda: kds.hull(np.eye(5, 3)[:, [0, 1, 1]]))
+        self.refused(r"^points: point 3: must be finite$", lambda: kds.hull(np.diag([1, 1, 1, np.nan])[:, [0, 1, 3]]))
+
     def test_types(self):
         w, n3 = self.world, np.zeros((4, 3))
         self.refused(r"positions: must be real numbers, and has the dtype complex128", lambda: w.add_bodies(self.ball, n3 + 1j))
