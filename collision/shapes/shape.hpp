@@ -1,7 +1,7 @@
 // Shapes of bodies, and what the rest of the module needs to know of any shape.
 #pragma once
 
-#include "collision/quaternion.hpp"
+#include "collision/quaternion_alignment.hpp"
 
 #include <Eigen/Core>
 
