@@ -1,12 +1,10 @@
 #include "collision/narrow_phase/shape_distance.hpp"
 
-#include "collision/narrow_phase/hull_distance.hpp"
+#include "collision/narrow_phase/convex_distance.hpp"
 #include "collision/narrow_phase/part_groups.hpp"
 #include "collision/shapes/rounded_core.hpp"
 #include "collision/shapes/shape_kinds.hpp"
 #include "collision/vectors.hpp"
-
-#include <boost/container/small_vector.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,73 +21,6 @@ namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// The convex hull of some points, grown by a radius.
-class Convex {
- public:
-  using Corners = boost::container::small_vector<Vector3d, 8>;
-
-  explicit Convex(Corners corners, double radius = 0) : corners_(std::move(corners)), radius_(radius) {
-    for (const Vector3d& corner : corners_) middle_ += corner / static_cast<double>(corners_.size());
-    for (const Vector3d& corner : corners_) corner_distance_ = std::max(corner_distance_, norm(corner - middle_));
-  }
-
-  double radius() const { return radius_; }
-  const Vector3d& middle() const { return middle_; }
-  /// All of it is within this distance from the middle.
-  double bounding_radius() const { return corner_distance_ + radius_; }
-
-  /// Of the corners.
-  const Vector3d& farthest(const Vector3d& along) const {
-    const Vector3d* best = &corners_[0];
-    double most = dot(*best, along);
-    for (const Vector3d& corner : corners_) {
-      if (const double here = dot(corner, along); here > most) most = here, best = &corner;
-    }
-    return *best;
-  }
-
- private:
-  Corners corners_;
-  double radius_;
-  Vector3d middle_ = Vector3d::Zero();
-  double corner_distance_ = 0;
-};
-
-/// A point of the difference of two sets.
-struct Difference {
-  Vector3d of_a, of_b, way;
-};
-const Vector3d& point_of(const Difference& difference) { return difference.way; }
-
-NearestToOrigin<Difference> nearest_of_cores(const Convex& a, const Convex& b) {
-  constexpr int most_rounds = 200;  // a hull of many corners is as a ball, and takes some dozens
-  const auto farthest = [&](const Vector3d& along) {
-    const Vector3d &of_a = a.farthest(Vector3d(-along)), &of_b = b.farthest(along);
-    return Difference{of_a, of_b, of_b - of_a};
-  };
-  return nearest_to_origin(farthest, Vector3d(b.middle() - a.middle()), most_rounds);
-}
-
-ShapeDistance distance_of(const Convex& a, const Convex& b) {
-  const NearestToOrigin<Difference> nearest = nearest_of_cores(a, b);
-  ShapeDistance found{0, Vector3d::Zero(), Vector3d::Zero()};
-  for (std::size_t i = 0; i < nearest.corners.size(); ++i) {
-    found.of_a += nearest.weights[i] * nearest.corners[i].of_a;
-    found.of_b += nearest.weights[i] * nearest.corners[i].of_b;
-  }
-  const double of_cores = norm(nearest.point);
-  if (of_cores > 0) {
-    const Vector3d normal = nearest.point / of_cores;
-    const double radii = a.radius() + b.radius();
-    // Where they overlap, the point that divides the way between the cores as the radii do is in both.
-    const double part = of_cores < radii ? of_cores / radii : 1;
-    found.of_a += part * a.radius() * normal;
-    found.of_b -= part * b.radius() * normal;
-    found.distance = std::max(0.0, of_cores - radii);
-  }
-  return found;
-}
 
 /// A part of a shape as a tree of convex volumes: of one leaf for what is convex itself, that of its boxes for a mesh.
 class Part {
@@ -297,7 +228,7 @@ class NearestParts {
       const double apart = dot(pair.b.farthest(Vector3d(-pair.way)) - pair.a.farthest(pair.way), pair.way);
       if (too_far(apart / std::sqrt(square) - radii)) return;
     }
-    const NearestToOrigin<Difference> nearest = nearest_of_cores(pair.a, pair.b);
+    const NearestToOrigin<ConvexDifference> nearest = nearest_of_cores(pair.a, pair.b);
     pair.way = nearest.point;
     pair.bound = nearest.bound - radii;
     if (!too_far(pair.bound)) waiting.push_back(std::move(pair));
