@@ -11,24 +11,25 @@ namespace kds::certificates::detail {
 
 /// The difference of two motions with a common start, known to be a line.
 template <int Degree>
-Parabola<false> line_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
+KnownParabola<false> line_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
 
 /// The difference of two straight motions, written about the later start.
-Parabola<true> shifted_line_between(const Motion<1>& lower, const Motion<1>& upper);
+KnownParabola<true> shifted_line_between(const Motion<1>& lower, const Motion<1>& upper);
 
 /// The difference of two motions with a common start.
 template <int Degree>
-Parabola<false> parabola_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
+KnownParabola<false> parabola_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
 
 /// The difference of two motions, written about the later start.
 template <int Degree>
-Parabola<true> shifted_parabola_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
+KnownParabola<true> shifted_parabola_between(const Motion<Degree>& lower, const Motion<Degree>& upper);
 
 // ---------------------------------------------------------------------------------------------------------------
 
 template <int Degree>
-[[gnu::always_inline]] inline Parabola<false> line_between(const Motion<Degree>& lower, const Motion<Degree>& upper) {
-  Parabola<false> p;
+[[gnu::always_inline]] inline KnownParabola<false> line_between(const Motion<Degree>& lower,
+                                                                const Motion<Degree>& upper) {
+  KnownParabola<false> p;
   p.g = two_sum(upper.position.c[0], -lower.position.c[0]);
   p.r = two_sum(upper.position.c[1], -lower.position.c[1]);
   p.epoch = lower.start;
@@ -37,7 +38,7 @@ template <int Degree>
 
 /// Spread: as below, with a = 0. g has a low part of 7 m at most in units of u, and an error of 13 m in units of u^2,
 /// where m = |g_late| + |g_early| + |h r|: in all less than 8 u m. The rate is exact.
-[[gnu::always_inline]] inline Parabola<true> shifted_line_between(const Motion<1>& lower, const Motion<1>& upper) {
+[[gnu::always_inline]] inline KnownParabola<true> shifted_line_between(const Motion<1>& lower, const Motion<1>& upper) {
   const bool upper_later = upper.start >= lower.start;
   const auto& late = upper_later ? upper : lower;
   const auto& early = upper_later ? lower : upper;
@@ -50,7 +51,7 @@ template <int Degree>
   const DoubleDouble gap = two_sum(late.position.c[0], -place.high);
   const DoubleDouble drift = two_sum(late.position.c[1], -r);
   const double unit = std::abs(h.high) < 0x1p200 ? 0x1p-50 : std::numeric_limits<double>::infinity();
-  Parabola<true> p;
+  KnownParabola<true> p;
   p.g = {sign * gap.high, sign * (gap.low - (place.low + way.low))};
   p.r = {sign * drift.high, sign * drift.low};
   p.g_spread = unit * (std::abs(late.position.c[0]) + std::abs(g) + std::abs(way.high));
@@ -60,9 +61,9 @@ template <int Degree>
 }
 
 template <int Degree>
-[[gnu::always_inline]] inline Parabola<false> parabola_between(const Motion<Degree>& lower,
-                                                              const Motion<Degree>& upper) {
-  Parabola<false> p;
+[[gnu::always_inline]] inline KnownParabola<false> parabola_between(const Motion<Degree>& lower,
+                                                                    const Motion<Degree>& upper) {
+  KnownParabola<false> p;
   p.g = two_sum(upper.position.c[0], -lower.position.c[0]);
   p.r = two_sum(upper.position.c[1], -lower.position.c[1]);
   p.a = two_sum(upper.position.c[2], -lower.position.c[2]);
@@ -79,8 +80,8 @@ template <int Degree>
 /// 2^48 35 u^2 is 1.1 u: in all less than 16 u m = 2^-49 m. Products that underflow may cost 2^-1070, and h times that,
 /// which quick_parabola_failure_time() can bear if |h| < 2^200.
 template <int Degree>
-[[gnu::always_inline]] inline Parabola<true> shifted_parabola_between(const Motion<Degree>& lower,
-                                                                     const Motion<Degree>& upper) {
+[[gnu::always_inline]] inline KnownParabola<true> shifted_parabola_between(const Motion<Degree>& lower,
+                                                                           const Motion<Degree>& upper) {
   const bool upper_later = upper.start >= lower.start;
   const auto& late = upper_later ? upper : lower;
   const auto& early = upper_later ? lower : upper;
@@ -103,12 +104,12 @@ template <int Degree>
   const DoubleDouble drift = two_sum(late.position.c[1], -rate.high);
   const DoubleDouble bend = two_sum(late.position.c[2], -a);
   const double unit = std::abs(h.high) < 0x1p200 ? 0x1p-49 : std::numeric_limits<double>::infinity();
-  Parabola<true> p;
+  KnownParabola<true> p;
   p.g = {sign * gap.high, sign * (gap.low - (place.low + way.low))};
   p.r = {sign * drift.high, sign * (drift.low - (rate.low + 2 * b.low))};
   p.a = {sign * bend.high, sign * bend.low};
-  p.g_spread = unit * (std::abs(late.position.c[0]) + std::abs(g) +
-                       std::abs(h.high) * (std::abs(r) + std::abs(b.high)));
+  p.g_spread =
+      unit * (std::abs(late.position.c[0]) + std::abs(g) + std::abs(h.high) * (std::abs(r) + std::abs(b.high)));
   p.r_spread = unit * (std::abs(late.position.c[1]) + std::abs(r) + 2 * std::abs(b.high));
   p.epoch = late.start;
   return p;

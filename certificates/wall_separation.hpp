@@ -37,7 +37,7 @@ struct WallSeparation {
       const DoubleDouble ball = two_sum(centre.high, -radius);
       const DoubleDouble rest = two_sum(centre.low, ball.low);
       if (rest.low != 0) return undecided;
-      const Parabola<false> gap{two_sum(ball.high, rest.high), {-side * rate, 0}, {0, 0}, 0, 0, coordinate.start};
+      const KnownParabola<false> gap{two_sum(ball.high, rest.high), {-side * rate, 0}, {0, 0}, 0, 0, coordinate.start};
       return quick_line_failure_time(gap, now, horizon);
     }
   }

@@ -87,7 +87,7 @@ struct PolynomialCertificate {
   /// Answers for lines and parabolas.
   double quick_failure_time(double now, double horizon) const {
     if constexpr (Degree == 1 || Degree == 2) {
-      const Parabola<false> p = parabola();
+      const KnownParabola<false> p = parabola();
       if (Degree == 1 || p.a.high == 0) return quick_line_failure_time(p, now, horizon);
       return quick_parabola_failure_time<false>(p, now, horizon);
     }
@@ -100,7 +100,7 @@ struct PolynomialCertificate {
   }
 
  private:
-  Parabola<false> parabola() const {
+  KnownParabola<false> parabola() const {
     const auto& c = value.position.c;
     return {c[0], c[1], Degree == 2 ? c[c.size() - 1] : 0, 0, 0, value.start};
   }

@@ -12,7 +12,7 @@ namespace kds {
 /// What failure_time() gives for g + r x, the parabola p with a = 0, bit for bit, or a NaN where this needs the general
 /// methods.
 template <bool shifted>
-double quick_line_failure_time(const Parabola<shifted>& p, double now, double horizon);
+double quick_line_failure_time(const KnownParabola<shifted>& p, double now, double horizon);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -20,7 +20,7 @@ namespace detail {
 
 /// Whether the line is certainly zero at t; false where doubles do not decide. Precondition: t is its root up to
 /// rounding, and g and r are in the range below.
-inline bool is_root(const Parabola<false>& p, double t) {
+inline bool is_root(const KnownParabola<false>& p, double t) {
   const DoubleDouble h = two_sum(t, -p.epoch);
   const DoubleDouble run = two_product(p.r.high, h.high);
   return h.low == 0 && p.r.low == 0 && run.high == -p.g.high && run.low == -p.g.low;
@@ -38,7 +38,7 @@ inline bool is_root(const Parabola<false>& p, double t) {
 ///   the spreads when given, and by another 2^-50 in here. The sum of the low parts of start and time is off by 2^-98
 ///   of the time, and more than that is charged for d.
 template <bool shifted>
-[[gnu::always_inline]] inline double first_double_after_line(const Parabola<shifted>& p) {
+[[gnu::always_inline]] inline double first_double_after_line(const KnownParabola<shifted>& p) {
   const double g = p.g.high;
   const double r = p.r.high;
   const double inverse = 1 / r;
@@ -78,7 +78,8 @@ template <bool shifted>
 }  // namespace detail
 
 template <bool shifted>
-[[gnu::always_inline]] inline double quick_line_failure_time(const Parabola<shifted>& p, double now, double horizon) {
+[[gnu::always_inline]] inline double quick_line_failure_time(const KnownParabola<shifted>& p, double now,
+                                                             double horizon) {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   const double elapsed = now - p.epoch;
   if (!(std::abs(elapsed) < 0x1p200)) return undecided;

@@ -15,7 +15,7 @@ namespace kds {
 /// g + r x + a x^2 with x = t - epoch, each coefficient the sum of two doubles, high + low. a is exact, with |a.low| <=
 /// 2^-53 |a.high|; so are g and r, unless the parabola has been `shifted` from another epoch.
 template <bool shifted>
-struct Parabola {
+struct KnownParabola {
   DoubleDouble g;
   DoubleDouble r;
   DoubleDouble a;
@@ -33,7 +33,7 @@ struct Parabola {
 /// costs a fifth more.) Parabolas that nearly touch zero, or are negative so briefly that perhaps no double sees it,
 /// are left to the general method.
 template <bool turned, bool shifted>
-double quick_parabola_failure_time(const Parabola<shifted>& p, double now, double horizon);
+double quick_parabola_failure_time(const KnownParabola<shifted>& p, double now, double horizon);
 
 // ---------------------------------------------------------------------------------------------------------------
 
@@ -68,7 +68,7 @@ inline constexpr double underflow = 0x1p-800;
 /// 3 u, and at the end |g| has taken part in two roundings, |r h| in five and |a h^2| in seven: 8 u of their sum, and
 /// the spreads; doubled, for the roundings of the bound.
 template <bool shifted>
-Estimate value_at(const Parabola<shifted>& p, double h) {
+Estimate value_at(const KnownParabola<shifted>& p, double h) {
   const double b = p.a.high * h;
   const double size = std::abs(p.g.high) + std::abs(h) * (std::abs(p.r.high) + std::abs(b));
   double error = 0x1p-49 * size + underflow;
@@ -78,7 +78,7 @@ Estimate value_at(const Parabola<shifted>& p, double h) {
 
 /// p'(h). Likewise: 3 u of |a h|, twice; u |r| or the spread; and the two sums: 5 u.
 template <bool shifted>
-Estimate slope_at(const Parabola<shifted>& p, double h) {
+Estimate slope_at(const KnownParabola<shifted>& p, double h) {
   const double b = p.a.high * h;
   double error = 0x1p-49 * (std::abs(p.r.high) + std::abs(b)) + underflow;
   if constexpr (shifted) error += 2 * p.r_spread;
@@ -87,7 +87,7 @@ Estimate slope_at(const Parabola<shifted>& p, double h) {
 
 /// r^2 - 4 a g. The roundings are 4 u of the sum of the magnitudes; doubled, with what the spreads do.
 template <bool shifted>
-Estimate discriminant_of(const Parabola<shifted>& p) {
+Estimate discriminant_of(const KnownParabola<shifted>& p) {
   const double square = p.r.high * p.r.high;
   const double product = 4 * (p.a.high * p.g.high);
   double error = 0x1p-50 * (square + std::abs(product)) + underflow;
@@ -105,7 +105,7 @@ struct FallingRoot {
 };
 
 template <bool shifted>
-FallingRoot falling_root(const Parabola<shifted>& p, const Estimate& discriminant) {
+FallingRoot falling_root(const KnownParabola<shifted>& p, const Estimate& discriminant) {
   const double half = 0.5 / p.a.high;  // independent of the square root, so computed beside it
   const double q = std::sqrt(discriminant.value);
   const double sum = p.r.high + q;
@@ -129,7 +129,7 @@ FallingRoot falling_root(const Parabola<shifted>& p, const Estimate& discriminan
 /// three times: 2^-51 |v| + 2^-67 m. That is E = 2^-64.5 m. If shifted, the low parts are off by 2^-48 of the spreads
 /// when given, and by another 2^-50 in here.
 template <bool shifted>
-[[gnu::always_inline]] inline double first_double_after(const Parabola<shifted>& p, const FallingRoot& root) {
+[[gnu::always_inline]] inline double first_double_after(const KnownParabola<shifted>& p, const FallingRoot& root) {
   const double g = p.g.high;
   const double r = p.r.high;
   const double a = p.a.high;
@@ -174,7 +174,7 @@ template <bool shifted>
 }  // namespace detail
 
 template <bool turned, bool shifted>
-[[gnu::always_inline]] inline double quick_parabola_failure_time(const Parabola<shifted>& p, double now,
+[[gnu::always_inline]] inline double quick_parabola_failure_time(const KnownParabola<shifted>& p, double now,
                                                                  double horizon) {
   constexpr double undecided = std::numeric_limits<double>::quiet_NaN();
   const double elapsed = now - p.epoch;

@@ -100,7 +100,7 @@ struct SpinInUnits {
   }
 
   Number squared_rate;
-  Turn<Value> turn;
+  SpinAngle<Value> turn;
   double angle = 0;  ///< at least that of the unit of time
 };
 

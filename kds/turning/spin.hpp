@@ -18,7 +18,7 @@ namespace kds {
 /// this form it appears together with the sine alone, so that all else that formulas hold are sums of products of
 /// doubles: w^2 is one.
 template <class Number>
-struct Turn {
+struct SpinAngle {
   Number cosine;     ///< cos a
   Number rate_sine;  ///< w sin a, rad/s
 };
@@ -65,7 +65,7 @@ struct Spin {
   /// The turn at t: Number is Ball<double> or Ball<DoubleDouble>. The angle is reduced in double-doubles for both, so
   /// that many turns cost no precision.
   template <class Number>
-  Turn<Number> turn(double t) const {
+  SpinAngle<Number> turn(double t) const {
     if (still()) return {Number(1.0), Number(0.0)};
     const Ball<DoubleDouble> w = rate();
     const auto a = sine_cosine<Number>(angle(w, t));
@@ -78,7 +78,7 @@ struct Spin {
   }
 
   /// The same to 2^-bits, relative to 1 and to w.
-  Turn<Enclosure> enclosed_turn(double t, int bits) const {
+  SpinAngle<Enclosure> enclosed_turn(double t, int bits) const {
     const Exact time = Exact(t) - Exact(start);
     const Exact square = squared_rate<Exact>();
     // The root is known relative to itself and to the time that multiplies it.

@@ -37,7 +37,7 @@ constexpr bool is_sine(std::size_t i) { return i > 0 && i % 2 == 0; }
 
 /// A_1, A_2 ... of a turn, by the rule of the cosine of sums of angles.
 template <int Harmonics, class Value>
-auto harmonics_of_turn(const Turn<Value>& a) {
+auto harmonics_of_turn(const SpinAngle<Value>& a) {
   std::array<Value, 2 * std::size_t{Harmonics}> factors;
   factors[0] = a.cosine;
   factors[1] = a.rate_sine;
@@ -52,7 +52,8 @@ auto harmonics_of_turn(const Turn<Value>& a) {
 
 /// f at the epoch, where the turns are those given.
 template <int Degree, class Number, int Harmonics, class Value>
-Value value_at_epoch(const TurningSum<Degree, Number, Harmonics>& f, const Turn<Value>& a, const Turn<Value>& b) {
+Value value_at_epoch(const TurningSum<Degree, Number, Harmonics>& f, const SpinAngle<Value>& a,
+                     const SpinAngle<Value>& b) {
   const auto of_a = harmonics_of_turn<Harmonics>(a);
   const auto of_b = harmonics_of_turn<Harmonics>(b);
   const auto row = [&of_b](const auto& p) {

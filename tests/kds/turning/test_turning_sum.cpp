@@ -25,7 +25,7 @@ Real rate_of(const Spin& spin) {
   return sqrt(square);
 }
 
-Turn<Real> true_turn(const Spin& spin, const Real& t) {
+SpinAngle<Real> true_turn(const Spin& spin, const Real& t) {
   const Real rate = rate_of(spin);
   const Real angle = rate * (t - Real(spin.start));
   return {cos(angle), rate * sin(angle)};
@@ -111,7 +111,7 @@ TEST_CASE("turns are within their bounds, for rates and starts of all sizes", "[
     for (double& v : spin.velocity) v *= factor;
     if (random.one_in(3)) spin.start -= random.one_in(2) ? 1e6 : 1e9;
     const double t = random.between(-1, 1);
-    const Turn<Real> truth = true_turn(spin, Real(t));
+    const SpinAngle<Real> truth = true_turn(spin, Real(t));
     const auto a = spin.turn<Ball<double>>(t);
     const auto b = spin.turn<Ball<DoubleDouble>>(t);
     wrong += outside(a.cosine, truth.cosine) || outside(a.rate_sine, truth.rate_sine);
@@ -120,7 +120,7 @@ TEST_CASE("turns are within their bounds, for rates and starts of all sizes", "[
     const bool in_range = rate_of(spin) * abs(Real(t) - Real(spin.start)) < greatest_angle;
     wide += in_range && !(a.cosine.radius < 0x1p-49 && b.cosine.radius < 0x1p-58);
     wrong += !in_range && a.cosine.radius < 1;
-    const Turn<Enclosure> c = spin.enclosed_turn(t, 150);
+    const SpinAngle<Enclosure> c = spin.enclosed_turn(t, 150);
     const double cosine = c.cosine.middle.approximate();
     const double rate_sine = c.rate_sine.middle.approximate();
     wrong += abs(Real(cosine) - truth.cosine) > Real(0x1p-52);
