@@ -149,6 +149,7 @@ template <class Motion>
 void Domain<Motion>::run(double until) {
   for (const BodySlot slot : changed_) known_[slot].changed = false;
   changed_.clear(), events_.clear(), fresh_.clear();
+  caused_from_ = 0;
   report_.told = {};
   report_.computed = 0;
   if (!report_.divisible) return;

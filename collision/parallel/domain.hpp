@@ -216,6 +216,7 @@ class Domain final : private BasicWorldListener<Motion> {
   DomainEvent::Cause cause_;     ///< the last event from which others may follow
   double caused_at_ = -never;    ///< s
   std::uint64_t ends_seen_ = 0;  ///< RestingEvent::count, then
+  std::size_t caused_from_ = 0;  ///< place in events_ from which on they follow from it
   std::vector<BodySlot> wrong_;
   BodyMoves moves_;
   std::vector<NeighbourDomain> neighbours_;

@@ -2,6 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/parallel/domain.hpp"
 
+#include <cstddef>
 #include <iterator>
 
 namespace kds::collision {
@@ -55,7 +56,9 @@ void Domain<Motion>::put(const DomainEvent& event) {
       if (event.kind == Kind::wall) return others.a <= origin.a;
       return others != origin || !(event.order() < other.order());
     };
-    while (place != events_.begin() && !before(*std::prev(place))) --place;
+    // Two bodies may meet several times at one instant: what follows from each time stays after the one before.
+    const auto first = events_.begin() + (event.follows() ? static_cast<std::ptrdiff_t>(caused_from_) : 0);
+    while (place != first && !before(*std::prev(place))) --place;
   }
   events_.insert(place, event);
 }
@@ -65,6 +68,7 @@ template <class Motion>
 void Domain<Motion>::begin_cause(DomainEvent::Cause::Phase phase, BodyId a, BodyId b, double t) {
   cause_ = {phase, a, b};
   caused_at_ = t;
+  caused_from_ = events_.size();
   ends_seen_ = engine_.parts().resting.last_event().count;
 }
 
