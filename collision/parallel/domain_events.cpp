@@ -43,17 +43,16 @@ void Domain<Motion>::record(DomainEvent::Kind kind, const PairEvent& event) {
 }
 
 /// Independent events of one time, and those that follow from one, are put into the order of ids in the scene, as this
-/// world tells of them by ids of its own; those of contacts, which may follow from each other, are in that order
-/// already.
+/// world tells of them by ids of its own. Those of contacts and of walls, which may follow from each other, come in
+/// that order: queues know the keys of bodies.
 template <class Motion>
 void Domain<Motion>::put(const DomainEvent& event) {
   auto place = events_.end();
-  if (event.kind != Kind::contact && event.kind != Kind::separation) {
+  if (event.kind != Kind::contact && event.kind != Kind::separation && event.kind != Kind::wall) {
     const auto origin = event.origin();
     const auto before = [&](const DomainEvent& other) {
       const auto others = other.origin();
       if (others.phase != origin.phase || other.contact.time != event.contact.time) return true;
-      if (event.kind == Kind::wall) return others.a <= origin.a;
       return others != origin || !(event.order() < other.order());
     };
     // Two bodies may meet several times at one instant: what follows from each time stays after the one before.
