@@ -6,6 +6,7 @@
 #include "kds/audit.hpp"
 #include "kds/events/schedule.hpp"
 #include "kds/framework/kinetic_rule.hpp"
+#include "kds/number_text.hpp"
 
 #include <algorithm>
 #include <array>
@@ -394,4 +395,3 @@ void Kinetic<Rule, Listener, Queue, Solver>::extend_horizon(double now, double h
 #include "kds/framework/kinetic_edits.hpp"
 #include "kds/framework/kinetic_samples.hpp"
 #include "kds/framework/kinetic_standing.hpp"
-#include "kds/number_text.hpp"
