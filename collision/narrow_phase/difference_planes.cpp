@@ -1,8 +1,6 @@
 #include "collision/narrow_phase/difference_planes.hpp"
 
 #include "collision/narrow_phase/hull_distance.hpp"
-#include "collision/narrow_phase/zonotope_cells.hpp"
-#include "collision/precise_vector.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/rotation.hpp"
 #include "collision/vectors.hpp"
@@ -44,18 +42,6 @@ bool parallel(const HullDifference& hulls, const std::array<DifferenceEdge, 2>& 
 }
 
 }  // namespace
-
-PreciseVector precise_direction(const HullDifference& hulls, const DifferenceEdge& edge) {
-  const certificates::TurnedPoints& body = edge.of_b ? hulls.b : hulls.a;
-  const PreciseVector way = precise_difference(body.points[edge.to], body.points[edge.from]);
-  return body.turn * (edge.of_b ? way * -1.0 : way);
-}
-
-Vector3d unit_vector(const PreciseVector& v, double lengths, bool& known) {
-  const Vector3d rounded = v.rounded();
-  known = norm(rounded) >= unknown_normal * lengths;
-  return known ? normalized(rounded) : Vector3d(Vector3d::Zero());
-}
 
 template <int Degree>
 DifferencePlanes<Degree>::DifferencePlanes(const PlacedShape& a, const ConvexCore& core_a, const PlacedShape& b,

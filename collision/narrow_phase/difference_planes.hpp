@@ -5,8 +5,10 @@
 #include "collision/degrees.hpp"
 #include "collision/narrow_phase/convex_core.hpp"
 #include "collision/narrow_phase/quick_motion.hpp"
+#include "collision/narrow_phase/zonotope_cells.hpp"
 #include "collision/precise_vector.hpp"
 #include "collision/shapes/shape.hpp"
+#include "collision/vectors.hpp"
 
 #include <Eigen/Core>
 
@@ -178,10 +180,20 @@ void DifferencePlanes<Degree>::find_all(const Note& note) {
 }
 
 /// A direction of the difference in double-doubles: the difference of points is exact, the matrix makes some 2^-100.
-PreciseVector precise_direction(const certificates::HullDifference& hulls, const certificates::DifferenceEdge& edge);
+inline PreciseVector precise_direction(const certificates::HullDifference& hulls,
+                                       const certificates::DifferenceEdge& edge) {
+  const certificates::TurnedPoints& body = edge.of_b ? hulls.b : hulls.a;
+  const PreciseVector way = precise_difference(body.points[edge.to], body.points[edge.from]);
+  return body.turn * (edge.of_b ? way * -1.0 : way);
+}
+
 /// A vector that was made of others, unit up to some roundings; `known`: it is that. `lengths`: the product of the
 /// lengths of what was multiplied, whose cancellation leaves 2^-95 of it.
-Eigen::Vector3d unit_vector(const PreciseVector& v, double lengths, bool& known);
+inline Eigen::Vector3d unit_vector(const PreciseVector& v, double lengths, bool& known) {
+  const Eigen::Vector3d rounded = v.rounded();
+  known = norm(rounded) >= unknown_normal * lengths;
+  return known ? normalized(rounded) : Eigen::Vector3d(Eigen::Vector3d::Zero());
+}
 
 #define KDS_DECLARE(degree) extern template class DifferencePlanes<degree>;
 KDS_FOR_ALL_DEGREES(KDS_DECLARE)
