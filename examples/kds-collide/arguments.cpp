@@ -20,6 +20,8 @@
 namespace kds_collide {
 
 using namespace kds::io;
+using kds::append_number;
+using kds::number_text;
 
 namespace {
 

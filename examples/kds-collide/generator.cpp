@@ -16,6 +16,7 @@
 namespace kds_collide {
 
 using namespace kds::io;
+using kds::append_number;
 
 namespace {
 

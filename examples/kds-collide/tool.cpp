@@ -38,6 +38,7 @@ namespace kds_collide {
 namespace {
 
 using namespace kds::io;
+using kds::rounded_text;
 
 void print_summary(const RunResult& result) {
   std::fprintf(stderr,
