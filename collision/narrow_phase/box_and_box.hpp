@@ -21,7 +21,7 @@ namespace kds::collision {
 ///
 /// Cross products of edges shorter than this (relative, squared) come from parallel edges, whose common directions
 /// the face normals cover: leaving one out lets a contact be reported early by at most 2^-40 of the boxes' size.
-inline constexpr double parallel_edges = 0x1p-80;
+inline constexpr double surely_crossing = 0x1p-80;
 
 /// Axis number k of fifteen.
 inline Eigen::Vector3d box_axis(const PlacedShape& a, const PlacedShape& b, int k) {
@@ -36,7 +36,7 @@ void every_box_axis(const PlacedShape& a, const PlacedShape& b, const Visit& vis
   const int count = a.rotation == b.rotation ? 3 : 15;
   for (int k = 0; k < count; ++k) {
     const Eigen::Vector3d axis = box_axis(a, b, k);
-    if ((k < 6 || squared_norm(axis) > parallel_edges) && !visit(axis, k)) return;
+    if ((k < 6 || squared_norm(axis) > surely_crossing) && !visit(axis, k)) return;
   }
 }
 

@@ -49,6 +49,7 @@ class DifferencePlanes {
   struct Points {
     std::uint32_t begin, end;
   };
+  /// One of them: what spans it, and its gap.
   struct Plane {
     std::array<certificates::DifferenceEdge, 2> edges;
     std::array<Points, 2> farthest;  ///< of a and b: see certificates::DifferencePlane

@@ -147,7 +147,7 @@ TEST_CASE("a piece of a trajectory lasts some time, and is finite", "[point_moti
   const Vector3d far = Vector3d::Constant(1e300);
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double end : {1.0, 0.5, infinity, std::nan("")}) {
-    CHECK_THROWS_WITH(PointMotion<3>::cubic(o, o, o, o, 1, end), Catch::StartsWith("PointMotion::cubic: from 1.0"));
+    CHECK_THROWS_WITH(PointMotion<3>::cubic(o, o, o, o, 1, end), Catch::StartsWith("PointMotion::cubic: from 1 to "));
     CHECK_THROWS_WITH(PointMotion<5>::quintic(o, o, o, o, o, o, 1, end), Catch::StartsWith("PointMotion::quintic"));
   }
   CHECK_THROWS_WITH(PointMotion<3>::cubic(o, far, o, far, 0, 1e30), "PointMotion::cubic: a coefficient is not finite");

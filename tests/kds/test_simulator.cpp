@@ -205,7 +205,7 @@ TEST_CASE("a next time that is not a number is refused, whichever structure has 
   Script& wrong = of_first ? one : other;
   wrong.events = {{std::nan(""), 7}};
   const std::string what =
-      "Simulator: the clock stands at 1.500000, and structure " + std::string(of_first ? "0" : "1") +
+      "Simulator: the clock stands at 1.5, and structure " + std::string(of_first ? "0" : "1") +
       " (in the order of the arguments, from 0) says that its next event is at a time that is not a "
       "number";
   CHECK_THROWS_WITH(simulator.next_time(), what);

@@ -346,7 +346,7 @@ TEST_CASE("a repair that repairs nothing is named", "[framework]") {
   set.insert(7, {{{1, 0}}, 0}, 0);
   Simulator simulator(0, list);
   CHECK_THROWS_WITH(simulator.advance_to(5),
-                    Catch::Contains("ListRule: slot 4: repair() does not end: it has been called 1009 times at 1.0"));
+                    Catch::Contains("ListRule: slot 4: repair() does not end: it has been called 1009 times at 1"));
 }
 
 TEST_CASE("a right rule may repair as often as it has pairs, at one time", "[framework]") {
