@@ -61,7 +61,7 @@ TEST_CASE("event csv: every number reads back to the same double") {
     const auto x = std::bit_cast<double>(random());
     if (!std::isfinite(x)) continue;
     std::string text;
-    append_number(text, x);
+    kds::append_number(text, x);
     double again = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), again);
     REQUIRE(error == std::errc());
