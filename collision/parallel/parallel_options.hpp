@@ -19,7 +19,7 @@ struct ParallelOptions {
   std::size_t domains = 0;
   /// How far beyond its domain a world knows bodies: this many mean distances of neighbours, and the greatest diameter
   /// of a body that contacts move. > 0. More makes windows longer and the worlds larger.
-  double halo = 4;
+  double halo = 3;
   /// s, > 0: the longest window. The engine finds out how long windows can be; with shorter ones the listener is told
   /// of events sooner, and they cost more.
   double longest_window = 1e300;

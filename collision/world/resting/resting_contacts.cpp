@@ -60,11 +60,13 @@ double sliding_time(const certificates::PointMotion<Degree>& a, const certificat
 
 }  // namespace
 
-/// The contacts of a body, or of another (or a wall) that has fewer: a floor has many. Precondition: a has a member.
+/// The contacts of a body, or of another that has fewer: a floor has many. Precondition: a has a member.
 template <class Motion>
 const std::vector<detail::RestingSlot>& RestingContacts<Motion>::fewer(BodySlot a, BodySlot b) const {
-  const bool from_b = b != no_body && b < of_.size() && of_[b].contacts.size() < of_[a].contacts.size();
-  return of_[from_b ? b : a].contacts;
+  static const std::vector<Slot> without_member;
+  if (b == no_body) return of_[a].contacts;
+  const std::vector<Slot>& of_b = b < of_.size() ? of_[b].contacts : without_member;
+  return of_b.size() < of_[a].contacts.size() ? of_b : of_[a].contacts;
 }
 
 template <class Motion>
