@@ -156,9 +156,10 @@ class NearestParts {
     };
     std::vector<Groups> waiting{groups(0, 0)};
     while (!waiting.empty()) {
-      const auto [bound, of_a, of_b] = waiting.back();
+      const Groups next = waiting.back();
       waiting.pop_back();
-      if (too_far(bound)) continue;
+      if (too_far(next.bound)) continue;
+      const std::uint32_t of_a = next.of_a, of_b = next.of_b;
       const double size_a = size(a, of_a), size_b = size(b, of_b);
       if (size_a < 0 && size_b < 0) {
         a.groups().each_part(of_a, [&](std::uint32_t i) {

@@ -248,7 +248,7 @@ void predict(std::ofstream& csv, double packing, const Measured& from, double me
       const double step = computed + messages + bytes / bytes_a_second;
       const double log = p * events * merge + (p - 1) * events * event_bytes / bytes_a_second;
       const double alone = p * events * from.contact_seconds;
-      tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.1f,%.5f,%.2f\n", packing, n, processes, 1 / counts.busiest,
+      tell(csv, "%g,%g,%zu,%.3f,%.3f,%.3f,%.1f,%.2g,%.5f,%.2g\n", packing, n, processes, 1 / counts.busiest,
            alone / step, alone / (step + log), sent + rounds, bytes / 1e6, (step - computed) / step,
            (stored_bytes + world_bytes) * own * counts.busiest / 1e9);
     }
