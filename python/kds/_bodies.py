@@ -101,10 +101,17 @@ class MovingBodies:
         if inertia is not None and array_of("inertia", inertia).ndim != 0:
             tensor, inertia = doubles("inertia", inertia, (3, 3)), None
         if isinstance(position, Motion):
-            given = (velocity, acceleration, orientation, angular_velocity, higher, start, then)
-            left_out = (STILL, STILL, UPRIGHT, STILL, NOTHING, None, ())
-            if any(value is not default for value, default in zip(given, left_out)):
-                raise ValueError("position: is a kds.Motion, so no other part of the motion must be given")
+            for name, value, left_out in (
+                ("velocity", velocity, STILL),
+                ("acceleration", acceleration, STILL),
+                ("orientation", orientation, UPRIGHT),
+                ("angular_velocity", angular_velocity, STILL),
+                ("higher", higher, NOTHING),
+                ("start", start, None),
+                ("then", then, ()),
+            ):
+                if value is not left_out:
+                    raise ValueError(f"{name}: must be left out where position is a kds.Motion: that has all pieces")
             motions, later = _whole_motion("position", position)
         else:
             motions = np.empty((1, COLUMNS))

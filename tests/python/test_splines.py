@@ -177,7 +177,8 @@ class Splines(unittest.TestCase):
              lambda: cubic.add_bodies(kds.sphere(1), none + 9, then=kds.Motion([[1], [-1]], (0, 0, 0)))),
             (r"then\.start: must have the shape \(2, n\)",
              lambda: cubic.add_bodies(kds.sphere(1), none + 9, then=kds.Motion([[1]] * 3, (0, 0, 0)))),
-            (r"position: is a kds.Motion, so no other", lambda: cubic.add_body(kds.sphere(1), kds.Motion(0, (0, 0, 0)), (1, 0, 0))),
+            (r"velocity: must be left out where position is a kds.Motion: that has all pieces", lambda: cubic.add_body(kds.sphere(1), kds.Motion(0, (0, 0, 0)), (1, 0, 0))),
+            (r"then: must be left out", lambda: cubic.add_body(kds.sphere(1), kds.Motion(0, (0, 0, 0)), then=[kds.Motion(1, (0, 0, 0))])),
             (r"position: has no pieces", lambda: cubic.add_body(kds.sphere(1), kds.Motion([], (0, 0, 0)))),
         ):  # fmt: skip
             with self.subTest(pattern=pattern):
