@@ -13,6 +13,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 
 namespace kds::collision {
 
@@ -76,9 +77,18 @@ double TurningBounces<Motion>::pressed(BodySlot a, const Motion& motion_a, BodyS
   const Vector3d &turns_a = motion_a.angular_velocity, &turns_b = motion_b.angular_velocity;
   const PointRates<Motion::degree> rates(motion_a, motion_b, contact.time);
   const auto ball = [&](BodySlot slot) { return bodies_.mover(slot).radius > 0; };
-  const Vector3d& point = ball(a)   ? motion_a.path.coefficients[0]
-                          : ball(b) ? motion_b.path.coefficients[0]
-                                    : contact.point;
+  const auto radius = [&](BodySlot slot) {
+    const auto* const capsule = bodies_[slot].shape ? std::get_if<Capsule>(&bodies_[slot].shape->shape) : nullptr;
+    return capsule ? capsule->radius : 0.0;
+  };
+  const bool plane = bodies_.unbounded(a) || bodies_.unbounded(b) || contact.feature_a.kind == Feature::Kind::face ||
+                     contact.feature_b.kind == Feature::Kind::face;
+  // The gap between what is round and a plane is that of its centre, or of the place on the axis of a capsule, and not
+  // that of the point that touches, which turns away from the plane.
+  const Vector3d point = ball(a)   ? motion_a.path.coefficients[0]
+                         : ball(b) ? motion_b.path.coefficients[0]
+                         : plane   ? Vector3d(contact.point + (radius(b) - radius(a)) * n)
+                                   : contact.point;
   // What presses because bodies turn does so while they turn by a small angle. A speed for the whole of a shortest
   // flight would multiply the energy of bodies that spin fast.
   double most_turn = 0x1p-3;  // rad
