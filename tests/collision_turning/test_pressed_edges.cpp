@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <variant>
 
 namespace test_pressed_edges {
 namespace {
@@ -123,6 +124,25 @@ TEST_CASE("capsules whose sides slide crosswise while they spin part in flights 
     while (world.now() < 1 && counter.contacts < 1000) world.step(1);
     CHECK(world.now() == 1);
     CHECK(counter.contacts > 0);
+  }
+}
+
+TEST_CASE("the end of a capsule that spins is pressed to a plane by what its centre does", "[turning]") {
+  // The axis, nearly along the wall, turns towards it at an end that does not move along the normal otherwise.
+  constexpr double half_length = 0.3, radius = 0.1, rate = 10;
+  const Vector3d end = half_length * Vector3d(-std::cos(0.06), std::sin(0.06), 0), turns(-rate, rate / 10, 0);
+  for (const Shape& wall : {Shape(HalfSpace{-Vector3d::UnitY(), 0}), Shape(Box{Vector3d(5, 1, 5)})}) {
+    const bool box = std::holds_alternative<Box>(wall);
+    CAPTURE(box);
+    Counter counter;
+    Turning world({.response = Response::elastic}, &counter);
+    world.add_body({.shape = wall, .motion = {RigidMotion<1>{{{Vector3d(0, box ? 1 : 0, 0)}}}}, .fixed = true});
+    RigidMotion<1> motion{{{Vector3d(0, -radius - end[1] - 1e-6, 0), Vector3d(0, 0.001 - turns.cross(end)[1], 0)}}};
+    motion.orientation = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), end);
+    motion.angular_velocity = turns;
+    world.add_body({.shape = Capsule{radius, half_length}, .motion = {motion}, .inertia = 0.02, .restitution = 0});
+    while (world.now() < 0.05 && counter.contacts < 1000) world.step(0.05);
+    CHECK(counter.contacts == 50);  // flights of a millisecond
   }
 }
 
