@@ -1,10 +1,10 @@
 // Whether something round on a path comes nearer to a part of a polyhedron, and from when on.
 #pragma once
 
-#include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/touch_condition.hpp"
 #include "collision/vectors.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
@@ -142,16 +142,6 @@ requires(Degree <= 2) class PartApproach {
         each_failure(DerivativeCertificate<Rate>{with_error}, tau, end, look);
         each_failure(DerivativeCertificate<Rate>{with_deep_error}, tau, end, look);
       }
-    }
-  }
-
-  template <Certificate C, class Visit>
-  static void each_failure(const C& certificate, double tau, double end, const Visit& visit) {
-    for (double t = tau;;) {
-      t = failure_time(certificate, t, end);
-      if (!(t < end) || (t > tau && visit(t))) return;
-      t = recovery_time(certificate, t, end);
-      if (!(t < end)) return;
     }
   }
 
