@@ -136,7 +136,10 @@ class PolytopePair {
   };
   /// Of those that are near each other; none where doubles do not tell.
   std::optional<PointsInside> points_inside(const Frame& frame) const;
+  /// All features where there are no such points.
   NearPair near_pair(const std::optional<PointsInside>& inside, double within) const;
+  /// The least depth along one of these.
+  double depth_among(const Frame& frame, const NearPair& near) const;
   /// As apart_until, but farther apart than `grown`.
   double farther_apart_until(double grown, double t, double horizon) const;
 
@@ -298,22 +301,27 @@ double PolytopePair<Degree>::farther_apart_until(double grown, double t, double 
 /// too.
 template <int Degree>
 double PolytopePair<Degree>::depth(double t) const {
-  constexpr double least_sine = 0x1p-20, slack = 0x1p-17;
+  constexpr double slack = 0x1p-17;
   const Frame frame = this->frame(t);
   std::optional<PointsInside> inside;
   if (!has_flat_edge(polytope_a_) && !has_flat_edge(polytope_b_)) inside = points_inside(frame);
-  double least = never;
-  const auto take_face = [&](Way way) { least = std::min(least, -face_width(frame, way)); };
   double within = 0;
   if (inside) {
-    take_face(static_cast<Way>(inside->of[0].nearest_face()));
-    take_face(faces_a() + static_cast<Way>(inside->of[1].nearest_face()));
+    const Way of_a = static_cast<Way>(inside->of[0].nearest_face());
+    const Way of_b = faces_a() + static_cast<Way>(inside->of[1].nearest_face());
+    const double along_face = -std::max(face_width(frame, of_a), face_width(frame, of_b));
     const double lengths = norm(frame.way.value) + polytope_a_.radius + polytope_b_.radius;
-    within = inside->distance + std::max(least, 0.0) + slack * lengths;
+    within = inside->distance + std::max(along_face, 0.0) + slack * lengths;
   }
-  const NearPair near = near_pair(inside, within);
-  for (const std::uint32_t f : near.of[0].faces) take_face(f);
-  for (const std::uint32_t f : near.of[1].faces) take_face(faces_a() + f);
+  return depth_among(frame, near_pair(inside, within));
+}
+
+template <int Degree>
+double PolytopePair<Degree>::depth_among(const Frame& frame, const NearPair& near) const {
+  constexpr double least_sine = 0x1p-20;
+  double least = never;
+  for (const std::uint32_t f : near.of[0].faces) least = std::min(least, -face_width(frame, f));
+  for (const std::uint32_t f : near.of[1].faces) least = std::min(least, -face_width(frame, faces_a() + f));
   near.every_pair_of_edges([&](std::uint32_t u, std::uint32_t v) {
     const double sine = norm(cross(frame.a.edges[u], frame.b.edges[v]));
     if (!(sine > least_sine)) return;
