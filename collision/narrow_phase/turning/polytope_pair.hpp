@@ -76,6 +76,19 @@ class PolytopePair {
     return frame.fastest(polytope_a_.radius, polytope_b_.radius, stretch);
   }
 
+  /// How far ahead closed_wait() can tell; for how much of that a condition of a way is broken for certain, all the
+  /// time.
+  double stretch(const Frame& frame, double longest) const {
+    return frame.certain ? frame.stretch(polytope_a_.radius + polytope_b_.radius, longest) : longest;
+  }
+  double closed_wait(const Frame& frame, Way way, double stretch) const;
+  /// Whether it is along two edges that are parallel but for 2^-10.
+  bool is_thin(const Frame& frame, Way way) const {
+    if (way < faces()) return false;
+    const EdgePair pair = edge_pair(way);
+    return !(norm(cross(frame.a.edges[pair.of_a], frame.b.edges[pair.of_b])) > 0x1p-10);
+  }
+
   /// A time from t on until which they are apart; t where doubles do not tell, or where it would be hardly later.
   double apart_until(double t, double horizon) const { return farther_apart_until(0, t, horizon); }
 
@@ -233,9 +246,9 @@ auto PolytopePair<Degree>::near_ways(const Frame& frame, double stretch) const -
     least = -error(frame) - fastest(frame, stretch) * stretch;
   }
   const NearPair near = near_pair(inside, within);
-  std::vector<WayWidth<Way>> ways;
+  std::vector<WayWidth<Way>> found;
   const auto take = [&](Way way, double width) {
-    if (!(width < least)) ways.push_back({way, width});
+    if (!(width < least)) found.push_back({way, width});
   };
   for (const std::uint32_t f : near.of[0].faces) take(f, face_width(frame, f));
   for (const std::uint32_t f : near.of[1].faces) take(faces_a() + f, face_width(frame, faces_a() + f));
@@ -244,7 +257,52 @@ auto PolytopePair<Degree>::near_ways(const Frame& frame, double stretch) const -
     take(way_of_edges(u, v), widths[0]);
     take(way_of_edges(u, v) + 1, widths[1]);
   });
-  return ways;
+  return found;
+}
+
+/// Of a face by the deepest corner; of two edges by any of the conditions. Unit vectors that are multiplied change by
+/// their relative rotation alone.
+template <int Degree>
+double PolytopePair<Degree>::closed_wait(const Frame& frame, Way way, double stretch) const {
+  if (!frame.certain) return 0;
+  const auto negative_for = [stretch](const Jet& f, double rounding, double third) {
+    return positive_for(Jet{-f.value - rounding, -f.rate, -f.bend}, third, stretch);
+  };
+  const auto of_a = [&](const Eigen::Vector3d& x) { return turning(x, frame.spin_a); };
+  const auto of_b = [&](const Eigen::Vector3d& x) { return turning(x, frame.spin_b); };
+  const double rates = frame.rate_a + frame.rate_b;
+  const auto distance_for = [&](const VectorJet& n, double rate, std::uint32_t p, std::uint32_t q) {
+    const TurningBounds bounds(frame, rate, polytope_a_.radius, polytope_b_.radius, stretch);
+    const VectorJet apart = frame.way + of_b(frame.b.points[q]) - of_a(frame.a.points[p]);
+    return negative_for(dot(n, apart), bounds.rounding, bounds.third);
+  };
+  if (way < faces_a()) {
+    const auto face = static_cast<std::size_t>(way);
+    const Eigen::Vector3d& n = frame.a.normals[face];
+    return distance_for(of_a(n), frame.rate_a, polytope_a_.structure->faces[face][0], frame.b.farthest_corner(-n));
+  }
+  if (way < faces()) {
+    const auto face = static_cast<std::size_t>(way - faces_a());
+    const Eigen::Vector3d& n = frame.b.normals[face];
+    return distance_for(-1.0 * of_b(n), frame.rate_b, frame.a.farthest_corner(-n),
+                        polytope_b_.structure->faces[face][0]);
+  }
+  const EdgePair pair = edge_pair(way);
+  const HullEdge &edge_a = polytope_a_.structure->edges[pair.of_a], &edge_b = polytope_b_.structure->edges[pair.of_b];
+  const double sense = pair.forward ? 1 : -1;
+  const VectorJet u = of_a(sense * frame.a.edges[pair.of_a]), v = of_b(frame.b.edges[pair.of_b]);
+  double wait = distance_for(cross(u, v), rates, edge_a.ends[0], edge_b.ends[0]);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double side = k == 0 ? 1 : -1;
+    const auto product_for = [&](const Jet& f) {
+      return negative_for(side * f, PairFrame<Degree>::rounding, rates * rates * rates * (1 + 0x1p-40));
+    };
+    if (has_face(edge_a.faces[k])) {
+      wait = std::max(wait, product_for(sense * dot(of_a(frame.a.normals[edge_a.faces[k]]), v)));
+    }
+    if (has_face(edge_b.faces[k])) wait = std::max(wait, product_for(dot(of_b(frame.b.normals[edge_b.faces[k]]), u)));
+  }
+  return wait;
 }
 
 /// How long all of b is beyond all of a by more than `grown`, along a direction that turns with one of them: that one

@@ -55,7 +55,6 @@ class TurningPolytopes : public PolytopePair<Degree> {
     return {&frame, this->error(frame) + this->fastest(frame, stretch) * stretch};
   }
 
-  static constexpr bool many_conditions = true;
   /// Calls test(certificate) for conditions of a way until it returns false.
   template <class Test>
   bool every_condition(Way way, const Conditions& which, const Test& test) const;

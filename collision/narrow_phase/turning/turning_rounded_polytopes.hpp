@@ -76,12 +76,11 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
   bool known_to_separate_nothing(Way way) const {
     return way < first_corner_and_edge_ && Base::known_to_separate_nothing(way);
   }
-  /// Whether it is along two edges that are parallel but for 2^-10.
-  bool is_thin(const Frame& frame, Way way) const {
-    if (way < this->faces() || way >= first_corner_and_edge_) return false;
-    const auto pair = this->edge_pair(way);
-    return !(norm(cross(frame.a.edges[pair.of_a], frame.b.edges[pair.of_b])) > 0x1p-10);
+  // Of ways that those of hulls are a part of, what is known of these.
+  double closed_wait(const Frame& frame, Way way, double stretch) const {
+    return way < first_corner_and_edge_ ? Base::closed_wait(frame, way, stretch) : 0;
   }
+  bool is_thin(const Frame& frame, Way way) const { return way < first_corner_and_edge_ && Base::is_thin(frame, way); }
   /// Only ways of edges that are parallel can.
   template <class Vanishes>
   bool separates_nothing(Way way, const Vanishes& vanishes) const {

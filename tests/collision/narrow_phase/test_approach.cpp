@@ -66,7 +66,7 @@ TEST_CASE("bodies that fall together and overlap by a rounding approach at all t
   CHECK(overlapping > 100);
 }
 
-TEST_CASE("a ball or capsule that touches a mesh meets it next at one time, whenever it is asked", "[narrow_phase]") {
+TEST_CASE("what touches a mesh meets it next at one time, whenever it is asked", "[narrow_phase]") {
   int touching = 0, met = 0;
   std::vector<int> wrong;  // trials
   for (int trial = 0; trial < 1000; ++trial) {
