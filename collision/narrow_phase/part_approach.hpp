@@ -175,4 +175,17 @@ requires(Degree <= 2) class PartApproach {
   Error deep_error_{};  ///< the same without the tilt
 };
 
+/// The first time between tau and end, both excluded, at which two shapes begin to approach at a part, so that they do:
+/// `touch.approaching()`; or end.
+template <class Touch, int Degree>
+double approach_begins(const Touch& touch, const PartApproach<Degree>& part, double tau, double end) {
+  double first = end;
+  part.each_begin(tau, end, [&](double t) {
+    if (!touch.approaching(t)) return false;
+    first = t;
+    return true;
+  });
+  return first;
+}
+
 }  // namespace kds::collision

@@ -161,19 +161,16 @@ struct Ways : TurningPolytopes<2> {
 Shape hull_of_many(Random& random, int count) {
   const auto kind = random.below(4);
   const double flat = kind == 1 ? std::pow(10.0, random.between(-9, 0)) : 1;
-  for (;;) {
+  return kds::tests::hull_of_random([&] {
     std::vector<Vector3d> points;
     for (int i = 0; i < count; ++i) {
       Vector3d p = random_vector(random, 1).normalized();
-      if (kind == 2) p = Vector3d((2 * p).array().round() / 2);
+      if (kind == 2) p = kds::tests::on_lattice(p);
       p[2] *= flat;
       points.push_back(p);
     }
-    try {
-      return convex_hull(points);
-    } catch (const InvalidHull&) {
-    }
-  }
+    return points;
+  });
 }
 
 }  // namespace
