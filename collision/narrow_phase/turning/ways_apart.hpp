@@ -188,11 +188,12 @@ class WaysApart {
   void every_way(const Frame& frame, Widths& widths, const Least& least, const Visit& visit) const {
     std::vector<WayWidth<Way>> thin;
     for (;;) {
-      const auto [way, width] = widths.take_widest();
-      if (width == -never || width < least()) break;
+      const WayWidth<Way> widest = widths.take_widest();
+      const Way way = widest.way;
+      if (widest.width == -never || widest.width < least()) break;
       if constexpr (requires { pair_.is_thin(frame, way); }) {
         if (pair_.is_thin(frame, way)) {
-          thin.push_back({way, width});
+          thin.push_back(widest);
           continue;
         }
       }
