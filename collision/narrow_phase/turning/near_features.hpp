@@ -3,7 +3,6 @@
 
 #include "collision/narrow_phase/turning/seen_polytope.hpp"
 #include "collision/vectors.hpp"
-#include "kds/certificate.hpp"
 
 #include <Eigen/Core>
 

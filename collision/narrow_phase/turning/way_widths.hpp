@@ -1,7 +1,7 @@
 // The ways in which two bodies that turn may be apart, and how wide they are.
 #pragma once
 
-#include "kds/certificate.hpp"
+#include "kds/arithmetic/lattice.hpp"
 
 #include <algorithm>
 #include <array>
