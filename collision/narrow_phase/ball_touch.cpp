@@ -211,13 +211,7 @@ TouchDirection BallTouch<Degree>::direction(double tau) const {
 template <int Degree>
 double BallTouch<Degree>::turning(double tau, double end) const {
   if constexpr (Degree <= 2) {
-    const auto look = [&](const PolyhedronPart& each) {
-      approach_to(each).each_begin(tau, end, [&](double t) {
-        if (!approaching(t)) return false;
-        end = t;
-        return true;
-      });
-    };
+    const auto look = [&](const PolyhedronPart& each) { end = approach_begins(*this, approach_to(each), tau, end); };
     PolyhedronPart face = part(2, 0);
     look(face);
     face.direction = -face.direction;

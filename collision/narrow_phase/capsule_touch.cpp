@@ -297,13 +297,7 @@ template <int Degree>
 double CapsuleTouch<Degree>::turning(double tau, double end) const {
   const Vector3d face = unit_or_zero(accurate_cross(triangle_.edge(0), triangle_.edge(1)));
   if constexpr (Degree <= 2) {
-    const auto look = [&](const PolyhedronPart& each) {
-      approach_to(each).each_begin(tau, end, [&](double t) {
-        if (!approaching(t)) return false;
-        end = t;
-        return true;
-      });
-    };
+    const auto look = [&](const PolyhedronPart& each) { end = approach_begins(*this, approach_to(each), tau, end); };
     const auto look_at_both = [&](const Vector3d& at, const Vector3d& normal) {
       look({at, 2, normal}), look({at, 2, -normal});
     };

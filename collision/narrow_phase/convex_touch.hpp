@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/relative_motion.hpp"
 #include "collision/narrow_phase/separating_axes.hpp"
 #include "collision/narrow_phase/time_spans.hpp"
+#include "collision/narrow_phase/touch_condition.hpp"
 #include "collision/vectors.hpp"
 
 #include <Eigen/Core>
@@ -26,27 +27,6 @@ struct TouchDirection {
   double separation;       ///< along the normal; < 0: penetration
   bool approaching;
 };
-
-/// Speeds along an axis up to [0] + tau [1] are rounding errors and count as zero.
-template <int Degree>
-std::array<double, 2> smallest_speeds(const RelativeMotion<Degree>& motion) requires(Degree <= 2) {
-  constexpr double rounding = 8 * 0x1p-53;
-  if constexpr (Degree == 1) {
-    return {rounding * norm(motion.coefficients[1]), 0};
-  } else {
-    return {rounding * norm(motion.coefficients[1]), 2 * rounding * norm(motion.coefficients[2])};
-  }
-}
-
-/// The same for degree n = 3 to 5, and for all derivatives: up to the derivatives of this polynomial they are rounding
-/// errors. A coefficient along an axis takes 4 of them, Horner's rule for its derivatives 2 n + 1.
-template <int Degree>
-std::array<double, std::size_t{Degree} + 1> smallest_speeds(const RelativeMotion<Degree>& motion) {
-  constexpr double rounding = 16 * 0x1p-53;
-  std::array<double, std::size_t{Degree} + 1> smallest;
-  for (std::size_t i = 0; i <= Degree; ++i) smallest[i] = rounding * norm(motion.coefficients[i]);
-  return smallest;
-}
 
 /// When a triangle and another convex shape touch: while all the conditions "their gap along this direction is below
 /// the contact gap" hold, each of them a polynomial of the time. All answers are closed forms of the shapes and the
@@ -126,8 +106,8 @@ class ConvexTouch {
     // As many directions are left out as have to be: few are asked about. None is where they overlap along all.
     std::array<bool, capacity> left_out{};
     double most = -TimeSpans::infinity;
-    for (const Condition& each : conditions) most = std::max(most, each(tau));
-    bool all = !(most > -gap);
+    bool all = std::all_of(conditions.begin(), conditions.end(),
+                           [&](const Condition& each) { return each.deeper_than(gap_, gap, tau); });
     for (bool found = all; !found;) {
       most = -TimeSpans::infinity;
       std::size_t at = capacity;
@@ -152,7 +132,7 @@ class ConvexTouch {
       if (left_out[i] || separation < most - rounding) continue;
       if (!all && !meets_along(each.normal, gap)) continue;
       if (opposite_of(conditions, each)(tau) >= most - rounding && dot(each.normal, offset) < 0) continue;
-      const int trend = each.trend(tau, separation > -gap ? tilted : speeds);
+      const int trend = each.trend(tau, each.deeper_than(gap_, gap, tau) ? speeds : tilted);
       // Rising before falling before neither; then the greatest.
       const auto weight = [](int t) { return t > 0 ? 2 : (t < 0 ? 1 : 0); };
       const bool better =
@@ -165,9 +145,10 @@ class ConvexTouch {
     return chosen;
   }
 
-  /// The first time after tau, before `end`, at which bodies that move apart turn towards each other: where a
-  /// separation that is the greatest of all along which they can meet has its maximum, or `end`. At other times the
-  /// greatest separation goes on rising.
+  /// The first time after tau, before `end`, at which bodies that do not approach begin to, or `end`: where a
+  /// separation that is the greatest of all along which they can meet has its maximum. Else the greatest goes on
+  /// rising. Of paths of degree 2 also where one ceases to rise by more than its error, so that one that falls counts,
+  /// and where one becomes as deep as a gap, or less deep.
   double turning(double tau, double end) const {
     if constexpr (Degree >= 3) {
       const Conditions conditions(*this);
@@ -184,16 +165,21 @@ class ConvexTouch {
     }
     if constexpr (Degree == 2) {
       const Conditions conditions(*this);
+      const auto speeds = smallest_speeds(motion_), tilted = tilted_speeds();
+      const auto look = [&](const Condition& each, double t) {
+        if (!among_greatest(conditions, each, t) || !approaching(t)) return false;
+        end = t;
+        return true;
+      };
       for (const Condition& each : conditions) {
-        const auto& p = each.separation;
-        if (!(p[2] < 0)) continue;
-        const double top = -p[1] / (2 * p[2]);
-        if (!(top > tau && top < end)) continue;
-        const double least = each(top) + gap_(top) / tie;
-        const bool greatest = std::all_of(conditions.begin(), conditions.end(), [&](const Condition& c) {
-          return c(top) <= least || !meets_along(c.normal, gap_(top));
-        });
-        if (greatest) end = top;
+        const auto look_here = [&](double t) { return look(each, t); };
+        if (each.separation[2] < 0) {
+          each_failure(each.rate({0, 0}), tau, end, look_here);
+          for (const auto& error : {speeds, tilted}) {
+            each_failure(each.rate({-error[0], -error[1]}), tau, end, look_here);
+          }
+        }
+        each_change(each.above_gap(gap_), tau, end, look_here, look_here);
       }
     }
     return end;
@@ -208,38 +194,7 @@ class ConvexTouch {
   /// Separations nearer than gap / tie are equal: 16 roundings, where two computations of one separation differ by 8.
   static constexpr double tie = 4;
 
-  struct Condition {
-    std::array<double, std::size_t{Degree} + 1> separation;  ///< along the normal; below the gap: near
-    Eigen::Vector3d normal;                                  ///< unit, from a to b
-
-    double operator()(double tau) const {
-      if constexpr (Degree == 1) {
-        return separation[0] + tau * separation[1];
-      } else if constexpr (Degree >= 3) {
-        return derivative_at(separation, 0, tau);
-      } else {
-        return separation[0] + tau * (separation[1] + tau * separation[2]);
-      }
-    }
-
-    /// 1 if it rises just after tau, -1 if it falls, 0 if it does neither up to rounding.
-    template <class Speeds>
-    int trend(double tau, const Speeds& speeds) const {
-      const auto sign = [](double x, double rounding) { return x > rounding ? 1 : (x < -rounding ? -1 : 0); };
-      if constexpr (Degree >= 3) {
-        int trend = 0;
-        for (int order = 1; order <= Degree && trend == 0; ++order) {
-          trend = sign(derivative_at(separation, order, tau), derivative_at(speeds, order, tau));
-        }
-        return trend;
-      } else if constexpr (Degree == 1) {
-        return sign(separation[1], speeds[0]);
-      } else {
-        const int now = sign(separation[1] + 2 * tau * separation[2], speeds[0] + tau * speeds[1]);
-        return now != 0 ? now : sign(separation[2], 0.5 * speeds[1]);
-      }
-    }
-  };
+  using Condition = TouchCondition<Degree>;
 
   /// Speeds up to these are rounding errors also where they are along the normals of triangles.
   auto tilted_speeds() const {
@@ -372,6 +327,13 @@ class ConvexTouch {
     std::array<Condition, capacity> items_;
     std::size_t size_ = 0;
   };
+
+  /// Whether a separation may count for the direction at a time: unless another along which they can meet is greater.
+  bool among_greatest(const Conditions& conditions, const Condition& each, double tau) const {
+    const double gap = gap_(tau), least = each(tau) + 2 * gap / tie;
+    return std::all_of(conditions.begin(), conditions.end(),
+                       [&](const Condition& c) { return c(tau) <= least || !meets_along(c.normal, gap); });
+  }
 
   /// The conditions of the two sides of an axis stand side by side.
   static const Condition& opposite_of(const Conditions& conditions, const Condition& condition) {

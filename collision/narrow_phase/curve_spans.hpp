@@ -108,18 +108,27 @@ struct FarCurve {
   }
 };
 
-/// Calls visit(t) for the maxima of f between `from` and `end`, both excluded, in order, until it returns true: the
-/// first doubles just after which f falls.
+/// Calls fails(t) and recovers(t) for the times between `from` and `end`, both excluded, at which the sign of f
+/// changes, in order, until one returns true: the first doubles just after which it is the other.
+template <Certificate C, class Fails, class Recovers>
+void each_change(const C& f, double from, double end, const Fails& fails, const Recovers& recovers) {
+  for (double t = from;;) {
+    t = failure_time(f, t, end);
+    if (!(t < end) || (t > from && fails(t))) return;
+    t = recovery_time(f, t, end);
+    if (!(t < end) || (t > from && recovers(t))) return;
+  }
+}
+
+template <Certificate C, class Visit>
+void each_failure(const C& f, double from, double end, const Visit& visit) {
+  each_change(f, from, end, visit, [](double) { return false; });
+}
+
+/// The same of the maxima of f: the first doubles just after which f falls.
 template <Certificate C, class Visit>
 void each_maximum(const C& f, double from, double end, const Visit& visit) {
-  const DerivativeCertificate<C> rises{f};
-  double t = from;
-  for (;;) {
-    t = failure_time(rises, t, end);
-    if (!(t < end) || (t > from && visit(t))) return;
-    t = recovery_time(rises, t, end);
-    if (!(t < end)) return;
-  }
+  each_failure(DerivativeCertificate<C>{f}, from, end, visit);
 }
 
 /// Shrinks the window to a part that contains all its times at which c0 + c1 x + c2 x^2 + ... < 0; false if there are

@@ -1,10 +1,10 @@
 // Whether something round on a path comes nearer to a part of a polyhedron, and from when on.
 #pragma once
 
-#include "collision/narrow_phase/convex_touch.hpp"
 #include "collision/narrow_phase/curve_spans.hpp"
 #include "collision/narrow_phase/mesh_margins.hpp"
 #include "collision/narrow_phase/relative_motion.hpp"
+#include "collision/narrow_phase/touch_condition.hpp"
 #include "collision/vectors.hpp"
 #include "kds/certificate.hpp"
 #include "kds/motion.hpp"
@@ -145,16 +145,6 @@ requires(Degree <= 2) class PartApproach {
     }
   }
 
-  template <Certificate C, class Visit>
-  static void each_failure(const C& certificate, double tau, double end, const Visit& visit) {
-    for (double t = tau;;) {
-      t = failure_time(certificate, t, end);
-      if (!(t < end) || (t > tau && visit(t))) return;
-      t = recovery_time(certificate, t, end);
-      if (!(t < end)) return;
-    }
-  }
-
   double acceleration() const { return Degree == 2 ? 2 * height_[Degree] : 0.0; }
   PolynomialCertificate<1> rate_from_plane(const Error& error) const {
     return {{{{height_[1] + error[0], acceleration() + error[1]}}, 0.0}};
@@ -184,5 +174,18 @@ requires(Degree <= 2) class PartApproach {
   Error error_{};       ///< constant, then times tau; times the radius, if this is no plane
   Error deep_error_{};  ///< the same without the tilt
 };
+
+/// The first time between tau and end, both excluded, at which two shapes begin to approach at a part, so that they do:
+/// `touch.approaching()`; or end.
+template <class Touch, int Degree>
+double approach_begins(const Touch& touch, const PartApproach<Degree>& part, double tau, double end) {
+  double first = end;
+  part.each_begin(tau, end, [&](double t) {
+    if (!touch.approaching(t)) return false;
+    first = t;
+    return true;
+  });
+  return first;
+}
 
 }  // namespace kds::collision

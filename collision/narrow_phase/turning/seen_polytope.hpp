@@ -12,6 +12,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,8 +23,8 @@ namespace kds::collision {
 class TurningPolytope {
  public:
   explicit TurningPolytope(const ConvexCore& core) : TurningPolytope(core.structure(), core.points()) {}
-  TurningPolytope(const HullStructure& of_points, std::span<const Eigen::Vector3d> places)
-      : structure(&of_points), points(places.begin(), places.end()) {
+  TurningPolytope(const HullStructure& of_points, std::span<const Eigen::Vector3d> places, bool exact = true)
+      : structure(&of_points), points(places.begin(), places.end()), exact_(exact) {
     for (const std::uint32_t i : structure->corners) radius = std::max(radius, norm(points[i]) * (1 + 0x1p-50));
   }
 
@@ -47,6 +49,34 @@ class TurningPolytope {
     return normals_;
   }
 
+  /// The middle of its corners, and the least that it is below a face.
+  struct Middle {
+    Eigen::Vector3d point;
+    double below;
+  };
+  const Middle& middle() const {
+    if (!middle_) {
+      middle_ = {Eigen::Vector3d::Zero(), std::numeric_limits<double>::infinity()};
+      for (const std::uint32_t i : structure->corners) middle_->point += points[i];
+      middle_->point /= static_cast<double>(structure->corners.size());
+      for (std::size_t f = 0; f < structure->faces.size(); ++f) {
+        middle_->below = std::min(middle_->below, dot(normals()[f], points[structure->faces[f][0]] - middle_->point));
+      }
+    }
+    return *middle_;
+  }
+  /// Whether all corners of a face are exactly in one plane: of a hull that was moved those of triangles are.
+  bool has_exact_faces() const {
+    return exact_ || std::all_of(structure->faces.begin(), structure->faces.end(),
+                                 [](const std::vector<std::uint32_t>& face) { return face.size() == 3; });
+  }
+  /// The same, towards its middle by a part of the way there, up to roundings.
+  TurningPolytope drawn_in(double part) const {
+    TurningPolytope smaller(*structure, points, false);
+    for (Eigen::Vector3d& x : smaller.points) x += (middle().point - x) * part;
+    return smaller;
+  }
+
   /// Three of its corners, in their order. Of quadrangles both vectors from the first one are sides.
   std::array<Eigen::Vector3d, 3> face(std::size_t f) const {
     const auto [a, b, c] = spanning_corners(structure->faces[f]);
@@ -61,7 +91,9 @@ class TurningPolytope {
   double radius = 0;  ///< no corner is farther from the origin of the body
 
  private:
+  bool exact_;  ///< it is the hull that its structure is of
   mutable std::vector<Eigen::Vector3d> edges_, normals_;
+  mutable std::optional<Middle> middle_;
 };
 
 /// Its points in the axes of the world, about the body's origin.
@@ -71,22 +103,23 @@ struct SeenCorners {
         axes{turn(Eigen::Vector3d::UnitX()), turn(Eigen::Vector3d::UnitY()), turn(Eigen::Vector3d::UnitZ())},
         points(seen(polytope.points)) {}
 
+  Eigen::Vector3d seen(const Eigen::Vector3d& x) const { return x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2]; }
   std::vector<Eigen::Vector3d> seen(const std::vector<Eigen::Vector3d>& of_body) const {
     std::vector<Eigen::Vector3d> in_world(of_body.size());
-    for (std::size_t i = 0; i < of_body.size(); ++i) {
-      const Eigen::Vector3d& x = of_body[i];
-      in_world[i] = x[0] * axes[0] + x[1] * axes[1] + x[2] * axes[2];
-    }
+    for (std::size_t i = 0; i < of_body.size(); ++i) in_world[i] = seen(of_body[i]);
     return in_world;
   }
 
-  const Eigen::Vector3d& farthest(const Eigen::Vector3d& along) const {
+  /// The corner that is the farthest along a direction: its number among the points.
+  std::uint32_t farthest_corner(const Eigen::Vector3d& along) const {
     std::uint32_t best = structure->corners.front();
+    double most = dot(along, points[best]);
     for (const std::uint32_t i : structure->corners) {
-      if (dot(along, points[i]) > dot(along, points[best])) best = i;
+      if (const double height = dot(along, points[i]); height > most) best = i, most = height;
     }
-    return points[best];
+    return best;
   }
+  const Eigen::Vector3d& farthest(const Eigen::Vector3d& along) const { return points[farthest_corner(along)]; }
 
   /// What it covers at most along a unit vector while it turns about an axis.
   double revolving_extent(const Eigen::Vector3d& n, const Eigen::Vector3d& spin) const {

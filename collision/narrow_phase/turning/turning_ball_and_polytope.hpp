@@ -7,6 +7,7 @@
 #include "collision/narrow_phase/hull_distance.hpp"
 #include "collision/narrow_phase/turning/pair_frame.hpp"
 #include "collision/narrow_phase/turning/seen_polytope.hpp"
+#include "collision/narrow_phase/turning/way_widths.hpp"
 
 #include <Eigen/Core>
 
@@ -64,7 +65,11 @@ class TurningBallAndPolytope {
   template <class Test>
   bool every_condition(int way, Conditions, const Test& test) const;
 
-  double gaps(const Frame& frame, std::vector<double>& gap) const;
+  std::vector<WayWidth<int>> near_ways(const Frame& frame, double stretch) const;
+  double error(const PairFrame<Degree>& frame) const {
+    if (!frame.certain) return never;
+    return 4 * frame.way_error + PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius());
+  }
 
   double fastest(const PairFrame<Degree>& frame, double stretch) const {
     return frame.fastest(polytope_.radius, 0, stretch);
@@ -100,10 +105,6 @@ class TurningBallAndPolytope {
   std::size_t edge_count() const { return polytope_.structure->edges.size(); }
   static int number_of_ways(const HullStructure& core) {
     return static_cast<int>(core.faces.size() + core.edges.size() + core.corners.size());
-  }
-  double error(const PairFrame<Degree>& frame) const {
-    if (!frame.certain) return never;
-    return 4 * frame.way_error + PairFrame<Degree>::rounding * (norm(frame.way.value) + polytope_.radius + radius());
   }
   std::uint32_t other_end(std::uint32_t edge, std::uint32_t end) const {
     const auto& ends = polytope_.structure->edges[edge].ends;
@@ -169,13 +170,15 @@ bool TurningBallAndPolytope<Degree>::every_condition(int way, Conditions, const 
   return test(BallBeyondPart<Degree>{part(p, p, p, Part::Kind::corner), radii_});
 }
 
+/// All: there are as many as faces, edges and corners.
 template <int Degree>
-double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<double>& gap) const {
+std::vector<WayWidth<int>> TurningBallAndPolytope<Degree>::near_ways(const Frame& frame, double) const {
   const HullStructure& structure = *polytope_.structure;
   const Eigen::Vector3d& centre = frame.way.value;
-  std::size_t way = 0;
+  std::vector<WayWidth<int>> found;
+  const auto take = [&found](double width) { found.push_back({static_cast<int>(found.size()), width}); };
   for (std::size_t f = 0; f < face_count(); ++f) {
-    gap[way++] = dot(frame.a.normals[f], centre - frame.a.points[structure.faces[f][0]]) - radius();
+    take(dot(frame.a.normals[f], centre - frame.a.points[structure.faces[f][0]]) - radius());
   }
   for (std::size_t e = 0; e < edge_count(); ++e) {
     const HullEdge& edge = structure.edges[e];
@@ -186,7 +189,7 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
       width = std::min(
           {width, dot(cross(u, frame.a.normals[edge.faces[0]]), d), dot(cross(frame.a.normals[edge.faces[1]], u), d)});
     }
-    gap[way++] = width;
+    take(width);
   }
   for (const std::uint32_t i : structure.corners) {
     const Eigen::Vector3d d = centre - frame.a.points[i];
@@ -194,9 +197,9 @@ double TurningBallAndPolytope<Degree>::gaps(const Frame& frame, std::vector<doub
     for (const std::uint32_t e : edges_at_[i]) {
       width = std::min(width, (structure.edges[e].ends[0] == i ? -1 : 1) * dot(frame.a.edges[e], d));
     }
-    gap[way++] = width;
+    take(width);
   }
-  return error(frame);
+  return found;
 }
 
 template <int Degree>

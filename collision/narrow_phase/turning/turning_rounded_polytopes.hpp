@@ -36,6 +36,7 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
   using RigidMotion = typename Base::RigidMotion;
   using Frame = typename Base::Frame;
   using Conditions = typename Base::Conditions;
+  using Way = typename Base::Way;
 
   TurningRoundedPolytopes(const RigidMotion& a, const ConvexCore& core_a, const RigidMotion& b,
                           const ConvexCore& core_b)
@@ -50,14 +51,18 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
     this->ways = first_corners_ + corners(core_a) * corners(core_b);
   }
 
-  Conditions unsure(const Frame& frame, int, double stretch) const {
+  Conditions unsure(const Frame& frame, Way, double stretch) const {
     if (!frame.certain) return {};
     return {&frame, error(frame) + fastest(frame, stretch) * stretch};
   }
   template <class Test>
-  bool every_condition(int way, const Conditions& which, const Test& test) const;
+  bool every_condition(Way way, const Conditions& which, const Test& test) const;
 
-  double gaps(const Frame& frame, std::vector<double>& gap) const;
+  /// All: of one of the two they are few, as only segments and triangles are grown.
+  std::vector<WayWidth<Way>> near_ways(const Frame& frame, double stretch) const;
+  double error(const PairFrame<Degree>& frame) const {
+    return Base::error(frame) + PairFrame<Degree>::rounding * radius();
+  }
   double fastest(const PairFrame<Degree>& frame, double stretch) const {
     return frame.fastest(this->polytope_a_.radius, this->polytope_b_.radius + radius(), stretch);
   }
@@ -68,18 +73,17 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
     const double distance = norm(this->way_between_nearest(this->frame(t)));
     return distance > 0 ? std::max(0.0, radius() - distance) : never;
   }
-  bool known_to_separate_nothing(int way) const {
+  bool known_to_separate_nothing(Way way) const {
     return way < first_corner_and_edge_ && Base::known_to_separate_nothing(way);
   }
-  /// Whether it is along two edges that are parallel but for 2^-10.
-  bool is_thin(const Frame& frame, int way) const {
-    if (way < this->faces() || way >= first_corner_and_edge_) return false;
-    const auto pair = this->edge_pair(way);
-    return !(norm(cross(frame.a.edges[pair.of_a], frame.b.edges[pair.of_b])) > 0x1p-10);
+  // Of ways that those of hulls are a part of, what is known of these.
+  double closed_wait(const Frame& frame, Way way, double stretch) const {
+    return way < first_corner_and_edge_ ? Base::closed_wait(frame, way, stretch) : 0;
   }
+  bool is_thin(const Frame& frame, Way way) const { return way < first_corner_and_edge_ && Base::is_thin(frame, way); }
   /// Only ways of edges that are parallel can.
   template <class Vanishes>
-  bool separates_nothing(int way, const Vanishes& vanishes) const {
+  bool separates_nothing(Way way, const Vanishes& vanishes) const {
     if (way < this->faces() || way >= first_corner_and_edge_) return false;
     return every_condition(way, this->all(way), vanishes);
   }
@@ -95,9 +99,6 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
  protected:
   double radius() const { return radii_[0] + radii_[1]; }
   void set_radius(double radius) { radii_ = {radius, 0}; }
-  double error(const PairFrame<Degree>& frame) const {
-    return Base::error(frame) + PairFrame<Degree>::rounding * radius();
-  }
 
  private:
   /// One of the two bodies, as a certificate sees it.
@@ -126,8 +127,8 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
             limit};
   }
 
-  static int corners(const TurningPolytope& core) { return static_cast<int>(core.structure->corners.size()); }
-  static int edges(const TurningPolytope& core) { return static_cast<int>(core.structure->edges.size()); }
+  static Way corners(const TurningPolytope& core) { return static_cast<Way>(core.structure->corners.size()); }
+  static Way edges(const TurningPolytope& core) { return static_cast<Way>(core.structure->edges.size()); }
   static std::vector<std::vector<std::uint32_t>> edges_at(const TurningPolytope& core) {
     std::vector<std::vector<std::uint32_t>> edges(core.points.size());
     for (std::uint32_t e = 0; e < core.structure->edges.size(); ++e) {
@@ -157,21 +158,21 @@ class TurningRoundedPolytopes : public TurningPolytopes<Degree> {
 
   /// Calls visit(sides, edge of the first, corner of the second) or visit(sides, corner, corner) for a way.
   template <class OfEdge, class OfCorner>
-  auto with_parts(const Sides& sides, int way, const OfEdge& of_edge, const OfCorner& of_corner) const;
+  auto with_parts(const Sides& sides, Way way, const OfEdge& of_edge, const OfCorner& of_corner) const;
   double edge_and_corner_gap(const Sides& sides, std::uint32_t edge, std::uint32_t corner) const;
   double corners_gap(const Sides& sides, std::uint32_t i, std::uint32_t j) const;
 
   std::array<double, 2> radii_;
   std::array<std::vector<std::vector<std::uint32_t>>, 2> edges_at_;  ///< by points
   /// The first way of a kind: corner of a and edge of b; edge of a and corner of b; corner and corner.
-  int first_corner_and_edge_, first_edge_and_corner_, first_corners_;
+  Way first_corner_and_edge_, first_edge_and_corner_, first_corners_;
 };
 
 // ---------------------------------------------------------------------------------------------------------------------
 
 template <int Degree>
 template <class OfEdge, class OfCorner>
-auto TurningRoundedPolytopes<Degree>::with_parts(const Sides& sides, int way, const OfEdge& of_edge,
+auto TurningRoundedPolytopes<Degree>::with_parts(const Sides& sides, Way way, const OfEdge& of_edge,
                                                  const OfCorner& of_corner) const {
   const auto& of_a = *this->polytope_a_.structure;
   const auto& of_b = *this->polytope_b_.structure;
@@ -276,7 +277,7 @@ bool TurningRoundedPolytopes<Degree>::every_end(const Sides& sides, std::uint32_
 
 template <int Degree>
 template <class Test>
-bool TurningRoundedPolytopes<Degree>::every_condition(int way, const Conditions& which, const Test& test) const {
+bool TurningRoundedPolytopes<Degree>::every_condition(Way way, const Conditions& which, const Test& test) const {
   const Sides both = sides(which.frame, which.limit);
   if (way < first_corner_and_edge_) {
     if (!Base::every_condition(way, which, test)) return false;
@@ -341,28 +342,31 @@ double TurningRoundedPolytopes<Degree>::corners_gap(const Sides& sides, std::uin
 /// edges times the sine of their angle), or the product of the vector between two points with a vector of length 1 at
 /// most (a unit vector, or its part across a line), which turns no faster than both bodies together.
 template <int Degree>
-double TurningRoundedPolytopes<Degree>::gaps(const Frame& frame, std::vector<double>& gap) const {
-  Base::gaps(frame, gap);
-  for (int way = 0; way < first_corner_and_edge_; ++way) {
-    double& width = gap[static_cast<std::size_t>(way)];
-    if (way < this->faces()) {
-      width -= radius();
-    } else {
-      const auto pair = this->edge_pair(way);
-      const double sine = norm(cross(frame.a.edges[pair.of_a], frame.b.edges[pair.of_b]));
-      width = std::min(width, this->edge_values(frame, pair)[0] - radius() * sine);
+auto TurningRoundedPolytopes<Degree>::near_ways(const Frame& frame, double) const -> std::vector<WayWidth<Way>> {
+  std::vector<WayWidth<Way>> found;
+  found.reserve(static_cast<std::size_t>(this->ways));
+  for (Way way = 0; way < this->faces(); ++way) found.push_back({way, this->face_width(frame, way) - radius()});
+  for (std::size_t u = 0; u < frame.a.edges.size(); ++u) {
+    for (std::size_t v = 0; v < frame.b.edges.size(); ++v) {
+      const double within = radius() * norm(cross(frame.a.edges[u], frame.b.edges[v]));
+      const double apart = this->edge_values(frame, {u, v, true})[0];
+      const auto widths = this->edge_widths(frame, u, v);
+      const Way way = this->way_of_edges(u, v);
+      found.push_back({way, std::min(widths[0], -apart - within)});
+      found.push_back({way + 1, std::min(widths[1], apart - within)});
     }
   }
   const Sides both = sides(&frame, 0);
-  for (int way = first_corner_and_edge_; way < this->ways; ++way) {
-    gap[static_cast<std::size_t>(way)] = with_parts(
+  for (Way way = first_corner_and_edge_; way < this->ways; ++way) {
+    const double width = with_parts(
         both, way,
         [&](const Sides& seen, std::uint32_t edge, std::uint32_t corner) {
           return edge_and_corner_gap(seen, edge, corner);
         },
         [&](const Sides& seen, std::uint32_t i, std::uint32_t j) { return corners_gap(seen, i, j); });
+    found.push_back({way, width});
   }
-  return error(frame);
+  return found;
 }
 
 }  // namespace kds::collision

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "collision/narrow_phase/narrow_phase.hpp"
+#include "collision/narrow_phase/turning/exact_signs.hpp"
 #include "collision/narrow_phase/turning/pair_frame.hpp"
-#include "kds/turning/turning_certificate.hpp"
-#include "kds/turning/turning_failure_time.hpp"
+#include "collision/narrow_phase/turning/way_widths.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,30 +12,11 @@
 #include <optional>
 #include <tuple>
 #include <type_traits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
 namespace kds::collision {
-
-/// Signs and failure times as they are, each found when it is asked for.
-struct ExactSigns {
-  template <class C>
-  double failure_time(const C& certificate, double t, double until) const {
-    return kds::failure_time(certificate, t, until);
-  }
-  template <class C>
-  double recovery_time(const C& certificate, double t, double until) const {
-    return kds::recovery_time(certificate, t, until);
-  }
-  template <class C>
-  int sign_after(const C& certificate, double t) const {
-    return kds::sign_after(certificate, t);
-  }
-  template <class C>
-  bool vanishes(const C& certificate) const {
-    return kds::vanishes(certificate);
-  }
-};
 
 /// Finds contacts of a pair that has a finite number of *ways* of being apart, each of them a conjunction of turning
 /// certificates, its conditions: the bodies do not penetrate if all the conditions of some way hold.
@@ -43,9 +24,11 @@ struct ExactSigns {
 /// `Pair`: `ways`, their number, a constant or a member; `all(way)`, its conditions, and `every_condition(way,
 /// conditions, test)`; `separates_nothing(way, vanishes)`, whether the way does not count: all of its conditions are
 /// zero at all times, as vanishes(certificate) tells, and `known_to_separate_nothing(way)`, where that is told at once;
-/// `frame(t)`, what is known in doubles; `gaps(frame, gap)`, which fills in a width for each way and returns an error,
-/// so that a way that is narrower than -error has a condition that is broken then; `fastest(frame, stretch)`, a bound
-/// on how fast widths change; `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
+/// `frame(t)`, what is known in doubles; if the number of ways is a constant, `gaps(frame, gap)`, which fills in a
+/// width for each way and returns an error, so that a way that is narrower than -error has a condition that is broken
+/// then; if it is a member, `near_ways(frame, stretch)`, the ways that are not certainly closed just after all times of
+/// the stretch, with their widths, and `error(frame)`; `fastest(frame, stretch)`, a bound on how fast widths change;
+/// `unsure(frame, way, stretch)`, the conditions that have to be looked at, and perhaps
 /// `unsure_while_open`, the same of a way whose conditions hold just after the time of the frame; perhaps
 /// `is_thin(frame, way)`, whether a way is along edges that are nearly parallel; perhaps `many_conditions`, if they are
 /// never all to be looked at; `apart_until(t, horizon)`, a proven time; `time_of_turning()`; perhaps `open_wait(frame,
@@ -67,10 +50,11 @@ class WaysApart {
  public:
   using Frame = std::decay_t<decltype(std::declval<const Pair&>().frame(0.0))>;
 
-  explicit WaysApart(const Pair& pair, Signs signs = Signs())
-      : pair_(pair), signs_(signs), nothing_(by_way<signed char>()) {
-    for (int way = 0; way < pair_.ways; ++way) {
-      nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
+  explicit WaysApart(const Pair& pair, Signs signs = Signs()) : pair_(pair), signs_(signs) {
+    if constexpr (has_constant_ways<Pair>) {
+      for (Way way = 0; way < pair_.ways; ++way) {
+        nothing_[static_cast<std::size_t>(way)] = pair.known_to_separate_nothing(way) ? 1 : -1;
+      }
     }
   }
 
@@ -91,7 +75,7 @@ class WaysApart {
         }
       }
       stuck = false;
-      const int way = open_way(t);
+      const Way way = open_way(t);
       if (way == none) return t;
       double until = std::min(horizon, std::max(next_up(t), t + pair_.time_of_turning()));
       const double fails = closes(way, t, until);
@@ -133,7 +117,7 @@ class WaysApart {
 
   /// A time until which a way that is open just after t stays so for certain; t if none is, or if doubles do not tell.
   double open_until(double t, double horizon) const requires follows_open_ways {
-    const int way = open_way(t);
+    const Way way = open_way(t);
     if (way == none) return t;
     const Frame& frame = this->frame(t);
     const double all = (horizon - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
@@ -142,25 +126,10 @@ class WaysApart {
   }
 
  private:
-  static constexpr int none = -1;
+  using Way = WayOf<Pair>;
+  using Widths = WayWidths<Pair>;
   using Conditions = typename Pair::Conditions;
-
-  /// A value for each way: an array where their number is a constant.
-  static constexpr bool has_constant_ways = !std::is_member_object_pointer_v<decltype(&Pair::ways)>;
-  template <class T>
-  static auto values(const Pair& pair) {
-    if constexpr (has_constant_ways) {
-      return std::array<T, static_cast<std::size_t>(Pair::ways)>{};
-    } else {
-      return std::vector<T>(static_cast<std::size_t>(pair.ways));
-    }
-  }
-  template <class T>
-  using ByWay = decltype(values<T>(std::declval<const Pair&>()));
-  template <class T>
-  ByWay<T> by_way() const {
-    return values<T>(pair_);
-  }
+  static constexpr Way none = -1;
 
   /// The last one is kept.
   const Frame& frame(double t) const {
@@ -179,38 +148,52 @@ class WaysApart {
   static constexpr double soon_part = 0x1p-10;
 
   /// Whether all conditions of a way hold just after the time of the frame.
-  bool open(int way, const Frame& frame) const {
-    if (nothing_[static_cast<std::size_t>(way)] > 0) return false;
+  bool open(Way way, const Frame& frame) const {
+    if (known_nothing(way) > 0) return false;
     return pair_.every_condition(way, pair_.unsure(frame, way, 0), [&](const auto& condition) {
       const int sign = signs_.sign_after(condition, frame.time);
       return sign > 0 || (sign == 0 && !separates_nothing(way));
     });
   }
 
-  /// As those of the pair, but for ways that are known to separate nothing.
-  double gaps(const Frame& frame, ByWay<double>& gap) const {
-    const double error = pair_.gaps(frame, gap);
-    for (int way = 0; way < pair_.ways; ++way) {
-      if (nothing_[static_cast<std::size_t>(way)] > 0) gap[static_cast<std::size_t>(way)] = -never;
+  /// Of a way: whether it separates nothing; -1: not known.
+  signed char& known_nothing(Way way) const {
+    if constexpr (has_constant_ways<Pair>) {
+      return nothing_[static_cast<std::size_t>(way)];
+    } else {
+      const auto [known, is_new] = nothing_.try_emplace(way, static_cast<signed char>(-1));
+      if (is_new && pair_.known_to_separate_nothing(way)) known->second = 1;
+      return known->second;
     }
-    return error;
+  }
+  static auto nothing_known() {
+    if constexpr (has_constant_ways<Pair>) {
+      return std::array<signed char, static_cast<std::size_t>(Pair::ways)>{};
+    } else {
+      return std::unordered_map<Way, signed char>{};
+    }
+  }
+
+  /// Those that may be open just after times of the stretch.
+  Widths widths(const Frame& frame, double stretch) const {
+    Widths widths(pair_, frame, stretch);
+    widths.leave_out([this](Way way) { return known_nothing(way) > 0; });
+    return widths;
   }
 
   /// Calls visit(way) for those that are no narrower than least(), the widest first, until it returns true. Thin ways
   /// come last: signs of what is parallel but for roundings cost most, and where another way is open they are not
   /// asked.
   template <class Least, class Visit>
-  void every_way(const Frame& frame, ByWay<double>& gap, const Least& least, const Visit& visit) const {
-    std::vector<std::pair<int, double>> thin;
+  void every_way(const Frame& frame, Widths& widths, const Least& least, const Visit& visit) const {
+    std::vector<WayWidth<Way>> thin;
     for (;;) {
-      const auto widest = std::max_element(gap.begin(), gap.end());
-      const double width = *widest;
-      if (width == -never || width < least()) break;
-      const int way = static_cast<int>(widest - gap.begin());
-      *widest = -never;
+      const WayWidth<Way> widest = widths.take_widest();
+      const Way way = widest.way;
+      if (widest.width == -never || widest.width < least()) break;
       if constexpr (requires { pair_.is_thin(frame, way); }) {
         if (pair_.is_thin(frame, way)) {
-          thin.emplace_back(way, width);
+          thin.push_back(widest);
           continue;
         }
       }
@@ -222,14 +205,13 @@ class WaysApart {
   }
 
   /// One that is open just after t, or `none`.
-  int open_way(double t) const {
-    ByWay<double> gap = by_way<double>();
+  Way open_way(double t) const {
     const Frame& frame = this->frame(t);
-    const double error = gaps(frame, gap);
-    int found = none;
+    Widths widths = this->widths(frame, 0);
+    Way found = none;
     every_way(
-        frame, gap, [error] { return -error; },
-        [&](int way) {
+        frame, widths, [least = -widths.error()] { return least; },
+        [&](Way way) {
           if (open(way, frame)) found = way;
           return found != none;
         });
@@ -238,7 +220,7 @@ class WaysApart {
 
   /// The first double in [t, until] just after which a condition of a way is broken, or `never`. Mostly it is soon, and
   /// then few conditions have to be looked at. `until` may become less.
-  double closes(int way, double t, double& until) const {
+  double closes(Way way, double t, double& until) const {
     const Frame& frame = this->frame(t);
     if constexpr (requires { pair_.waits(frame, way, 0.0); }) {
       const double all = (until - t) * (1 + 0x1p-40), stretch = pair_.stretch(frame, all);
@@ -269,7 +251,7 @@ class WaysApart {
     return never;
   }
 
-  Conditions unsure_while_open(const Frame& frame, int way, double stretch) const {
+  Conditions unsure_while_open(const Frame& frame, Way way, double stretch) const {
     if constexpr (requires { pair_.unsure_while_open(frame, way, stretch); }) {
       return pair_.unsure_while_open(frame, way, stretch);
     } else {
@@ -280,26 +262,26 @@ class WaysApart {
   /// A time up to `until` just after which all ways are surely closed, as just after all times from t on: they are so
   /// narrow at t, and do not widen faster. t if doubles do not tell.
   double deep_until(double t, double until) const {
-    ByWay<double> gap = by_way<double>();
     const Frame& frame = this->frame(t);
-    const double error = gaps(frame, gap), widest = *std::max_element(gap.begin(), gap.end());
-    if (!(widest < -error)) return t;
     const double stretch = (until - t) * (1 + 0x1p-40);
+    const Widths widths = this->widths(frame, stretch);
+    const double error = widths.error(), widest = widths.widest();
+    if (!(widest < -error)) return t;
     const double wait = (-error - widest) / pair_.fastest(frame, stretch) * (1 - 0x1p-30);
     return wait > stretch ? until : std::max(t, next_down(t + wait));
   }
 
   /// The first double in [t, until] just after which a way is open. Precondition: none is open just after t.
   double first_opening(double t, double until) const {
-    ByWay<double> gap = by_way<double>();
     const Frame& frame = this->frame(t);
-    const double error = gaps(frame, gap);
+    Widths widths = this->widths(frame, (until - t) * (1 + 0x1p-40));
+    const double error = widths.error();
     const double fastest = pair_.fastest(frame, (until - t) * (1 + 0x1p-40));
     double first = never;
     // Narrower ones are not open by then.
     const auto least = [&] { return -error - fastest * ((std::min(first, until) - t) * (1 + 0x1p-40)); };
     if constexpr (!requires { pair_.closed_wait(frame, 0, 0.0); }) {
-      every_way(frame, gap, least, [&](int way) {
+      every_way(frame, widths, least, [&](Way way) {
         first = std::min(first, opens(way, t, std::min(first, until)));
         return false;
       });
@@ -308,11 +290,11 @@ class WaysApart {
       struct Other {
         bool thin;
         double closed_until;
-        int way;
+        Way way;
       };
       std::vector<Other> others;
       bool any = false;
-      every_way(frame, gap, least, [&](int way) {
+      every_way(frame, widths, least, [&](Way way) {
         const double end = std::min(first, until);
         if (!std::exchange(any, true)) {
           first = opens(way, t, end);
@@ -334,7 +316,7 @@ class WaysApart {
 
   /// A time up to `end`, not before that of the frame, until which a way is closed for certain, just after all times
   /// before it.
-  double closed_until(const Frame& frame, int way, double end) const {
+  double closed_until(const Frame& frame, Way way, double end) const {
     const double all = (end - frame.time) * (1 + 0x1p-40);
     const double wait = pair_.closed_wait(frame, way, pair_.stretch(frame, all));
     if (wait >= all) return end;
@@ -342,7 +324,7 @@ class WaysApart {
   }
 
   /// The first double in [t, until] just after which all conditions of a way hold, or `never`.
-  double opens(int way, double t, double until) const {
+  double opens(Way way, double t, double until) const {
     for (bool waited = true; waited;) {
       waited = false;
       pair_.every_condition(way, conditions_at(way, t), [&](const auto& condition) {
@@ -361,7 +343,7 @@ class WaysApart {
 
   /// Those that are to be looked at to know whether all hold just after t.
   static constexpr bool has_many_conditions = requires { Pair::many_conditions; };
-  Conditions conditions_at(int way, double t) const {
+  Conditions conditions_at(Way way, double t) const {
     if constexpr (has_many_conditions) {
       return pair_.unsure(frame(t), way, 0);
     } else {
@@ -370,8 +352,8 @@ class WaysApart {
   }
 
   /// As the pair says, which is asked once: exact zeros cost most.
-  bool separates_nothing(int way) const {
-    signed char& known = nothing_[static_cast<std::size_t>(way)];
+  bool separates_nothing(Way way) const {
+    signed char& known = known_nothing(way);
     if (known < 0) {
       const auto vanishes = [&](const auto& condition) { return signs_.vanishes(condition); };
       known = pair_.separates_nothing(way, vanishes) ? 1 : 0;
@@ -382,7 +364,7 @@ class WaysApart {
   const Pair& pair_;
   Signs signs_;
   mutable std::optional<Frame> frame_;
-  mutable ByWay<signed char> nothing_;  ///< by way: whether it separates nothing; -1: not known
+  mutable decltype(nothing_known()) nothing_ = nothing_known();
 };
 
 }  // namespace kds::collision

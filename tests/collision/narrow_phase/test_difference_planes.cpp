@@ -5,6 +5,7 @@
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/convex_hull.hpp"
 #include "collision/shapes/rotation.hpp"
+#include "tests/support/random_hulls.hpp"
 #include "tests/support/random_numbers.hpp"
 #include "tests/support/random_vectors.hpp"
 
@@ -31,20 +32,17 @@ using kds::tests::random_vector;
 Shape random_hull(Random& random) {
   const auto kind = random.below(4);
   const std::size_t count = 4 + random.below(kind < 2 ? 40 : 12);
-  for (;;) {
+  return kds::tests::hull_of_random([&] {
     std::vector<Vector3d> points;
     for (std::size_t i = 0; i < count; ++i) {
       Vector3d p = random_vector(random, 1);
       if (kind < 2) p.normalize();
-      if (kind == 2) p = Vector3d((2 * p).array().round() / 2);
+      if (kind == 2) p = kds::tests::on_lattice(p);
       if (kind == 3) p[2] *= 0x1p-20;
       points.push_back(p);
     }
-    try {
-      return convex_hull(points);
-    } catch (const InvalidHull&) {
-    }
-  }
+    return points;
+  });
 }
 
 Quaterniond random_orientation(Random& random) {

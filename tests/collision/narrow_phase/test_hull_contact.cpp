@@ -6,6 +6,7 @@
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/support/convex_gap.hpp"
 #include "tests/support/first_time_check.hpp"
+#include "tests/support/random_hulls.hpp"
 #include "tests/support/random_numbers.hpp"
 #include "tests/support/random_vectors.hpp"
 
@@ -30,21 +31,18 @@ using kds::tests::random_vector;
 
 /// Corners of a lattice, so that faces and edges of two are often parallel; or anywhere; or nearly in a plane.
 Shape random_hull(Random& random) {
-  for (;;) {
+  return kds::tests::hull_of_random([&random] {
     std::vector<Vector3d> points;
     const auto kind = random.below(3);
     const int count = 4 + static_cast<int>(random.below(5));
     for (int i = 0; i < count; ++i) {
       Vector3d p = random_vector(random, 1);
-      if (kind == 0) p = Vector3d((2 * p).array().round() / 2);
+      if (kind == 0) p = kds::tests::on_lattice(p);
       if (kind == 1) p[2] *= 0x1p-20;
       points.push_back(p);
     }
-    try {
-      return convex_hull(points);
-    } catch (const InvalidHull&) {
-    }
-  }
+    return points;
+  });
 }
 
 Shape random_solid(Random& random) {

@@ -3,12 +3,12 @@
 
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/narrow_phase.hpp"
-#include "collision/shapes/convex_hull.hpp"
 #include "kds/arithmetic/lattice.hpp"
 #include "tests/collision_turning/narrow_phase/turning_oracle.hpp"
 #include "tests/collision_turning/narrow_phase/turning_solids.hpp"
 #include "tests/support/convex_gap.hpp"
 #include "tests/support/first_time_check.hpp"
+#include "tests/support/random_hulls.hpp"
 
 #include <catch2/catch.hpp>
 
@@ -45,22 +45,19 @@ class TurningGap {
 };
 
 inline collision::Shape random_hull(Random& random) {
-  for (;;) {
+  return hull_of_random([&random] {
     std::vector<Eigen::Vector3d> points;
     const auto kind = random.below(4);
     const int count = 4 + static_cast<int>(random.below(4));
     for (int i = 0; i < count; ++i) {
       Eigen::Vector3d p = random_vector(random, 1);
-      if (kind == 0) p = Eigen::Vector3d((2 * p).array().round() / 2);  // faces and edges that are parallel
-      if (kind == 1) p[2] *= 0x1p-20;                                   // flat
-      if (kind == 2) p[1] *= 0.02, p[2] *= 0.02;                        // a needle
+      if (kind == 0) p = on_lattice(p);
+      if (kind == 1) p[2] *= 0x1p-20;             // flat
+      if (kind == 2) p[1] *= 0.02, p[2] *= 0.02;  // a needle
       points.push_back(p);
     }
-    try {
-      return collision::convex_hull(points);
-    } catch (const collision::InvalidHull&) {
-    }
-  }
+    return points;
+  });
 }
 
 /// Two that come near each other at a time of about 1; in some, what they have of spins, axes or orientations is alike.

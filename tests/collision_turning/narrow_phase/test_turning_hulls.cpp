@@ -14,6 +14,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -142,6 +143,72 @@ TEST_CASE("hulls that are boxes, wherever in their bodies, meet as hulls do, to 
     CHECK(as_boxes.penetrate(found + 0.01) == as_hulls.penetrate(found + 0.01));
   }
   CHECK(meetings > 30);
+}
+
+namespace {
+
+/// What it keeps for those that are derived from it.
+struct Ways : TurningPolytopes<2> {
+  using Base = TurningPolytopes<2>;
+  using Base::Base;
+  bool open(Way way, double t) const {
+    return every_condition(way, all(way), [t](const auto& condition) { return sign_after(condition, t) >= 0; });
+  }
+  double depth_along_all(double t) const { return depth_among(frame(t), near_pair(std::nullopt, 0)); }
+};
+
+/// Round, or flat by any factor, or with edges and faces that are parallel.
+Shape hull_of_many(Random& random, int count) {
+  const auto kind = random.below(4);
+  const double flat = kind == 1 ? std::pow(10.0, random.between(-9, 0)) : 1;
+  return kds::tests::hull_of_random([&] {
+    std::vector<Vector3d> points;
+    for (int i = 0; i < count; ++i) {
+      Vector3d p = random_vector(random, 1).normalized();
+      if (kind == 2) p = kds::tests::on_lattice(p);
+      p[2] *= flat;
+      points.push_back(p);
+    }
+    return points;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("ways of hulls that are left out for a stretch are closed during it", "[narrow-phase][turning][hull]") {
+  Random random(5);
+  int looks = 0, wrong = 0, wrong_depths = 0;
+  std::int64_t near = 0, there = 0;
+  for (int i = 0; i < 60; ++i) {
+    const int count = i % 4 == 0 ? 16 : 7;
+    const double rate = std::pow(10.0, random.between(-1, 1));
+    const auto [a, b] =
+        kds::tests::random_solids<2>(random, rate, hull_of_many(random, count), hull_of_many(random, count));
+    const Ways ways(a.motion, ConvexCore(a.shape), b.motion, ConvexCore(b.shape));
+    const WaysApart<TurningPolytopes<2>> apart(ways);
+    const double met = apart.first_penetration(0, 2);
+    // Apart, at the contact and in each other, for stretches of any length.
+    for (const double t : {met == never ? 1 : met, (met == never ? 1 : met) + random.between(-0.1, 0.1)}) {
+      const double stretch = random.one_in(3) ? 0 : 0.1 * ways.time_of_turning() * random.between(0, 1);
+      const auto found = ways.near_ways(ways.frame(t), stretch);
+      const auto is_found = [&](std::int64_t way) {
+        return std::any_of(found.begin(), found.end(), [way](const auto& each) { return each.way == way; });
+      };
+      near += static_cast<std::int64_t>(found.size()), there += ways.ways;
+      wrong_depths += ways.depth(t) == ways.depth_along_all(t) ? 0 : 1;
+      for (const double s : {t, t + random.between(0, 1) * stretch, t + stretch}) {
+        for (std::int64_t way = 0; way < ways.ways; ++way) {
+          if (is_found(way) || !ways.open(way, s)) continue;
+          wrong += ways.separates_nothing(way, [](const auto& c) { return vanishes(c); }) ? 0 : 1;
+        }
+        ++looks;
+      }
+    }
+  }
+  CHECK(wrong == 0);
+  CHECK(wrong_depths == 0);
+  CHECK(near < there / 2);
+  CHECK(looks == 360);
 }
 
 TEST_CASE("edges that keep parallel to a common axis of turning are told without exact tests",
