@@ -256,7 +256,7 @@ TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm 
   const BodySlot ball = part.add_ball(0);
   for (int flight = 0; flight < 8; ++flight) REQUIRE_FALSE(part.touch(ball, flight));
   CHECK(part.rest.empty());
-  CHECK_FALSE(part.rest.remembers_nothing());
+  CHECK_FALSE(part.rest.progress(ball).is_none());
   REQUIRE(part.touch(ball, 8.5));
   CHECK(part.rest.holds(part.floor, ball));
   CHECK(part.rest.carries(ball));
@@ -272,7 +272,7 @@ TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm 
   CHECK_FALSE(part.rest.solved());
   part.rest.solve();
   CHECK(part.rest.empty());
-  CHECK(part.rest.remembers_nothing());
+  CHECK(part.rest.progress(ball).is_none());
   CHECK(part.bodies.path(ball).coefficients[2] == Vector3d(0, 0, -Lying::gravity / 2));
   CHECK(part.told.back() == std::tuple(false, part.floor, ball));
 }
@@ -285,7 +285,7 @@ TEST_CASE("Rest of bodies that turn: one that moves is not calm, and has to be c
   fast.path.coefficients[1][0] = 1;
   part.bodies.move(ball, fast);
   CHECK_FALSE(part.meet(ball, {.time = part.clock.now, .normal = {0, 0, 1}}));
-  CHECK(part.rest.remembers_nothing());
+  CHECK(part.rest.progress(ball).is_none());
   for (int flight = 9; flight < 17; ++flight) CHECK_FALSE(part.touch(ball, flight));
   CHECK(part.touch(ball, 17.5));
 }
