@@ -27,8 +27,8 @@ namespace kds::collision {
 /// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
   /// False if something has happened that domains cannot compute: a body rests, or is about to, on a fixed one that has
-  /// an owner, an island reaches through the halo, a pair is let pass, contacts of a collapse go on, or a script takes a
-  /// body far away at one instant.
+  /// an owner, an island reaches through the halo, a pair is let pass, contacts of a collapse go on, or a script takes
+  /// a body far away at one instant.
   bool divisible = true;
   /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;

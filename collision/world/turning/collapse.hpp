@@ -80,8 +80,8 @@ class Blows {
     });
   }
 
-  /// Those that are linked with the last one by bodies that can move, the last one first; of many only the last. It does
-  /// not depend on any others.
+  /// Those that are linked with the last one by bodies that can move, the last one first; of many only the last. It
+  /// does not depend on any others.
   template <class CanMove>
   std::vector<Blow> of_last(const CanMove& can_move) const {
     std::vector<Number> numbers = linked(can_move, 0);

@@ -279,8 +279,8 @@ class TurningRest {
   std::size_t resting_ = 0;  ///< pairs that rest
   std::uint64_t walks_ = 0;
   detail::Blows blows_;
-  std::vector<Progress> kept_;    ///< by body, up to the last of which there is any
-  std::size_t half_listed_ = 0;   ///< pairs of bodies that are not fixed of which only one has gone on
+  std::vector<Progress> kept_;     ///< by body, up to the last of which there is any
+  std::size_t half_listed_ = 0;    ///< pairs of bodies that are not fixed of which only one has gone on
   std::vector<BodySlot> touched_;  ///< take_touched()
   SharedIslands shared_;
 };

@@ -74,9 +74,9 @@ struct Ignored {
 }  // namespace turning_rest
 
 /// With which others a body lies, or is about to lie, and what else decides when it comes to rest and wakes: another
-/// world that has the same bodies can go on from it. That of all bodies that lie with each other is complete, since what
-/// they do follows from these alone. A pair of two bodies that are not fixed is in the progress of both. What decides
-/// nothing any more is left out, so that two worlds in which the same will happen have the same bits.
+/// world that has the same bodies can go on from it. That of all bodies that lie with each other is complete, since
+/// what they do follows from these alone. A pair of two bodies that are not fixed is in the progress of both. What
+/// decides nothing any more is left out, so that two worlds in which the same will happen have the same bits.
 class TurningRestProgress {
  public:
   struct Link {

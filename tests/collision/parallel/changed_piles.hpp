@@ -63,8 +63,8 @@ void change_pile(World<Degree>& world, const Event& event, std::uint64_t seed, s
 }
 
 /// As compare_runs(), of one process whose listener makes changes at some events, and which is saved on the way and
-/// goes on from that. `change`: called with the world, the event, the seed, the number of the event, and how many bodies
-/// there were. Returns how many changes it has asked for.
+/// goes on from that. `change`: called with the world, the event, the seed, the number of the event, and how many
+/// bodies there were. Returns how many changes it has asked for.
 template <class Motion, class Change>
 std::uint64_t compare_changed_by(const Staging<Motion>& scene, Manner manner, std::uint64_t seed, Seen& seen,
                                  const Change& change) {

@@ -25,10 +25,10 @@ class TurningPileMaker {
  public:
   explicit TurningPileMaker(std::uint64_t seed) : random_(seed), seed_(seed) {
     coarse_ = random_.one_in(3);
-    width_ = coarse_ ? 16 : random_.between(8, 24);
+    width_ = coarse_ ? 16 : random_.between(10, 24);
     rebound_ = random_.one_in(3) ? 0 : random_.between(0, 0.6);
     friction_ = random_.one_in(5) ? 0 : random_.between(0.2, 1);
-    end_time_ = random_.between(0.4, 1.2);
+    end_time_ = random_.between(0.3, 0.9);
   }
 
   Staging<Motion> scene() {
@@ -39,7 +39,7 @@ class TurningPileMaker {
     const std::array kinds{BroadPhaseKind::automatic, BroadPhaseKind::grid, BroadPhaseKind::kinetic_sap};
     options.broad_phase = kinds[random_.below(kinds.size())];
     add_ground();
-    for (int groups = random_.integer(2, 4); groups > 0; --groups) add_group();
+    for (int groups = random_.integer(5, 9); groups > 0; --groups) add_group();
     for (int single = random_.integer(0, 4); single > 0; --single) {  // They strike the others.
       const Vector place(number(0, width_), number(0, 4), number(1, 3));
       const double x = number(-3, 3), y = number(-3, 3), z = number(-3, 0);
@@ -67,7 +67,7 @@ class TurningPileMaker {
   /// How it may be run, in so many domains at most.
   Manner manner(std::size_t most_domains) {
     Manner manner = random_manner(random_, most_domains);
-    if (random_.one_in(2)) manner.parallel.halo = random_.between(1, 6);
+    manner.parallel.halo = random_.between(1.5, 4);
     return manner;
   }
 
@@ -130,8 +130,9 @@ class TurningPileMaker {
     const double gap = coarse_ ? 0 : random_.between(0, 0.05);
     const double x = number(0, width_), y = number(0, 4);
     const Vector foot(x, y, 0.5 + (random_.one_in(2) ? 0 : number(0, 1)));
-    switch (random_.below(4)) {
+    switch (random_.below(5)) {
       case 0:
+      case 4:
         for (int i = random_.integer(2, 4); i > 0; --i) add(foot + Vector(i * (1 + gap), 0, 0), Vector::Zero(), true);
         return;
       case 1:
@@ -192,8 +193,31 @@ class TurningPileMaker {
   std::vector<Description> bodies_;
 };
 
-/// What a listener does at the k-th event: a body comes, goes, jumps, or is struck; what it lies on moves; or properties
-/// change.
+/// Rows of crates that are pushed together across x = 0, with one on top, come to rest and are struck at one end, each
+/// a little later than the one before; crates far away hold the middle of the scene there.
+inline void add_struck_crates(TurningWorld<2>& world) {
+  using Vector = Eigen::Vector3d;
+  namespace rest = kds::tests::rest;
+  world.add_body(rest::fixed(Box{{60, 60, 1}}, {0, 0, -1}));
+  const auto add = [&](const Vector& place, const Vector& velocity, double restitution) {
+    auto crate = rest::body(Box{{0.5, 0.5, 0.5}}, place);
+    crate.motion[0].path.coefficients[1] = velocity;
+    crate.restitution = restitution, crate.inertia = 0.2;
+    world.add_body(crate);
+  };
+  for (int j = 0; j < 4; ++j) {
+    const double y = 3.0 * j, middle = 0.37 * (j - 1.5), side = j % 2 == 0 ? 1 : -1;
+    for (int k = -1; k <= 2; ++k) add({middle + 1.002 * (k - 0.5), y, 0.5}, {-0.02 * (k - 0.5), 0, 0}, 0.2);
+    if (j % 2 == 1) add({middle, y, 1.501}, {0, 0, 0}, 0.2);
+    add({middle + side * (3.5 + 0.5 * j), y + 0.1 * j, 0.75}, {side * -4.0, 0, 1}, 0.5);
+  }
+  for (const double x : {-12.0, -9.0, 9.0, 12.0}) {
+    for (int j = 0; j < 3; ++j) add({x, 4.0 * j, 0.5}, {0, 0, 0}, 0.2);
+  }
+}
+
+/// What a listener does at the k-th event: a body comes, goes, jumps, or is struck; what it lies on moves; or
+/// properties change.
 inline void change_turning_pile(TurningWorld<2>& world, const Event& event, std::uint64_t seed, std::size_t k,
                                 std::size_t bodies) {
   using Vector = Eigen::Vector3d;
