@@ -182,7 +182,6 @@ void TurningRest<Motion>::solve() {
     Motion motion = bodies_.motion(slot).restarted(clock_.now);
     if constexpr (Motion::degree >= 2) motion.path.coefficients[2] = bodies_.free_acceleration(slot);
     listener_->take_up(slot, motion);
-    touch(slot);
   }
 }
 
