@@ -331,8 +331,18 @@ TEST_CASE("Rest of bodies that turn: who lies with a body, or strikes who does, 
   CHECK_FALSE(part.rest.leans(balls[2]));
   const Slots touched = part.rest.take_touched();
   CHECK(std::find(touched.begin(), touched.end(), balls[2]) != touched.end());
+  for (int flight = 1; flight <= 9 && !part.rest.carries(balls[0]); ++flight) {
+    for (const BodySlot ball : {balls[1], balls[0]}) part.touch(ball, flight);
+  }
+  REQUIRE(part.rest.carries(balls[0]));
+  const Slots stopped = part.rest.take_touched();
+  for (const BodySlot ball : {balls[0], balls[1]}) {
+    CHECK(std::find(stopped.begin(), stopped.end(), ball) != stopped.end());
+  }
+  part.rest.shared().take_concerned();
   part.rest.drop_all(balls[0]);
-  CHECK(part.rest.shared().take_concerned() == Islands{Slots{balls[0], balls[1]}});
+  part.rest.solve();
+  CHECK(part.rest.shared().take_concerned().front() == Slots{balls[0], balls[1]});
 
   // Contacts that are remembered for a collapse link bodies for as long.
   CHECK(part.rest.divisible());

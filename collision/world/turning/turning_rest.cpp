@@ -384,7 +384,6 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     of_[slot].ignored = {};
     of_[slot].since = never;
     listener_->take_up(slot, carried_by(of_[slot].carrier, bodies_.motion(slot), t));
-    touch(slot);
   }
 }
 
