@@ -397,6 +397,24 @@ TEST_CASE("Rest of bodies that turn: another world goes on with all that lies wi
   part.rest.audit(part.clock.now);
 }
 
+TEST_CASE("Rest of bodies that turn: what decides later when a body rests is in its progress", "[turning]") {
+  Lying part;
+  const std::vector balls{part.add_ball(0), part.add_ball(2)};
+  auto belt = part.bodies.motion(part.floor);
+  belt.path.coefficients[1][0] = 0x1p-10;
+  part.bodies.move(part.floor, belt);
+  for (int flight = 0; flight <= 8; ++flight) {
+    if (flight == 4) part.touch(balls[1], flight), part.meet_beside(balls[0], balls[1]);
+    REQUIRE_FALSE(part.touch(balls[0], flight));
+  }
+  const auto progress = part.rest.progress(balls[0]);
+  REQUIRE_FALSE(progress.is_none());
+  CHECK(progress.state()->since == 0);
+  CHECK(progress.state()->looked == part.clock.now);  // The other has not been calm for long enough.
+  CHECK(progress.state()->carrier.velocity == Vector3d(0x1p-10, 0, 0));
+  CHECK(progress.state()->links.size() == 2);
+}
+
 TEST_CASE("Rest of bodies that turn: what wakes together gets its motions by slot", "[turning]") {
   Lying part;
   const std::vector balls{part.add_ball(-3), part.add_ball(0), part.add_ball(3)};
