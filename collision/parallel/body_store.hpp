@@ -58,14 +58,8 @@ class BodyStore {
   /// Calls take(number) for what each body rests or leans on, unless these are walls.
   template <class Take>
   void each_carrier(const Take& take) const {
-    if constexpr (!turns<Motion>) {
-      for (BodySlot slot = 0; slot < bodies().slots(); ++slot) {
-        const RestingProgress resting = engine().transfer().kept_resting(slot);
-        if (!bodies().alive(slot) || !resting.state()) continue;
-        for (const auto& contact : resting.state()->contacts) {
-          if (contact.b != no_body) take(contact.a == bodies().number(slot) ? contact.b : contact.a);
-        }
-      }
+    for (BodySlot slot = 0; slot < bodies().slots(); ++slot) {
+      if (bodies().alive(slot)) engine().transfer().kept_resting(slot).each_other(bodies().number(slot), take);
     }
   }
 

@@ -142,34 +142,28 @@ void Domains<Motion>::begin(Division division, std::span<const BodySlot> answere
 template <class Motion>
 void Domains<Motion>::find_islands(const Engine<Motion>& from, double now) {
   know_islands_.clear();
-  if constexpr (!turns<Motion>) {
-    const auto& bodies = from.bodies();
-    std::vector<char> seen(bodies.slots());
-    std::vector<DomainIndex> all;
-    std::vector<Eigen::Vector3d> places;
-    for (BodySlot first = 0; first < bodies.slots(); ++first) {
-      if (!bodies.alive(first) || bodies.fixed(first) || std::exchange(seen[first], 1)) continue;
-      std::vector<BodySlot> island{first};
-      for (std::size_t i = 0; i < island.size(); ++i) {
-        const auto resting = from.transfer().kept_resting(island[i]);
-        if (!resting.state()) continue;
-        for (const auto& contact : resting.state()->contacts) {
-          const BodySlot other = contact.a == island[i] ? contact.b : contact.a;
-          if (other != no_body && !bodies.fixed(other) && !std::exchange(seen[other], 1)) island.push_back(other);
-        }
-      }
-      if (island.size() == 1) continue;
-      places.clear();
-      for (const BodySlot slot : island) places.push_back(place_at(bodies.path(slot), now));
-      if (!division_->find_knowers(places,
-                                   all)) {  // Its bodies go to their owners, from where they are gathered again.
-        islands_are_known_ = false;
-        continue;
-      }
-      for (const BodySlot slot : island) {
-        know_islands_[slot] = all;
-        for (const BodySlot sensor : bodies.attachments().sensors(slot)) know_islands_[sensor] = all;
-      }
+  const auto& bodies = from.bodies();
+  std::vector<char> seen(bodies.slots());
+  std::vector<DomainIndex> all;
+  std::vector<Eigen::Vector3d> places;
+  for (BodySlot first = 0; first < bodies.slots(); ++first) {
+    if (!bodies.alive(first) || bodies.fixed(first) || std::exchange(seen[first], 1)) continue;
+    std::vector<BodySlot> island{first};
+    for (std::size_t i = 0; i < island.size(); ++i) {
+      from.transfer().kept_resting(island[i]).each_other(island[i], [&](BodySlot other) {
+        if (!bodies.fixed(other) && !std::exchange(seen[other], 1)) island.push_back(other);
+      });
+    }
+    if (island.size() == 1) continue;
+    places.clear();
+    for (const BodySlot slot : island) places.push_back(place_at(bodies.path(slot), now));
+    if (!division_->find_knowers(places, all)) {  // Its bodies go to their owners, from where they are gathered again.
+      islands_are_known_ = false;
+      continue;
+    }
+    for (const BodySlot slot : island) {
+      know_islands_[slot] = all;
+      for (const BodySlot sensor : bodies.attachments().sensors(slot)) know_islands_[sensor] = all;
     }
   }
 }

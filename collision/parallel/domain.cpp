@@ -31,11 +31,9 @@ Domain<Motion>::Domain(const WorldOptions& options, const Division& division, st
       by_law_(options.law != nullptr),
       world_(for_domain(options, now), this),
       engine_(detail::EngineOf<Motion>::of(world_)) {
-  if constexpr (!turns<Motion>) {
-    engine_.transfer().islands().set_owned([this](BodySlot slot) {
-      return slot < known_.size() && (known_[slot].role == Role::deep || known_[slot].role == Role::followed);
-    });
-  }
+  engine_.transfer().islands().shared().set_owned([this](BodySlot slot) {
+    return slot < known_.size() && (known_[slot].role == Role::deep || known_[slot].role == Role::followed);
+  });
   // A body that has stayed in the halo of its cell, as it must, is not in that of a cell farther away. Those that are
   // known farther out, in islands, are nearer than the cells of their owners, so these are among them too.
   const Partition& partition = division.partition;
@@ -156,14 +154,14 @@ void Domain<Motion>::run(double until) {
   const double since = world_.now();
   try {
     world_.advance_to(until);
-  } catch (const RestsInPart&) {
-    report_.divisible = false;
   } catch (const std::runtime_error&) {
     report_.divisible = false;  // Perhaps of a copy that has gone wrong. If not, the scene as one world throws it too.
   } catch (...) {
     if (!by_law_) throw;
     report_.divisible = false;  // The same of what a law throws.
   }
+  // What contacts of the last instants would go on as is no progress of bodies.
+  if constexpr (turns<Motion>) report_.divisible = report_.divisible && engine_.parts().resting.divisible();
   if (!report_.divisible) return;
   for (const BodySlot slot : engine_.transfer().take_solved()) mark_changed(slot);
   for (Followed& body : followed_) follow(body, until);

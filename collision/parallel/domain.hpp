@@ -26,9 +26,9 @@ namespace kds::collision {
 
 /// The outcome of a window, or of its last step, in a domain.
 struct DomainReport {
-  /// False if something has happened that domains cannot compute: bodies that turn have come to rest, a body rests on a
-  /// fixed one that has an owner, an island reaches through the halo, a pair is let pass, or a script takes a body far
-  /// away at one instant.
+  /// False if something has happened that domains cannot compute: a body rests, or is about to, on a fixed one that has
+  /// an owner, an island reaches through the halo, a pair is let pass, contacts of a collapse go on, or a script takes
+  /// a body far away at one instant.
   bool divisible = true;
   /// Whether the bodies that were not followed have stayed deep in the cell.
   bool stayed = true;
@@ -172,6 +172,7 @@ class Domain final : private BasicWorldListener<Motion> {
   void begin_to_follow(BodySlot slot, double t);
   void begin_islands();
   void note_islands();
+  void note_touched() requires(turns<Motion>);
   void mark(std::span<const BodySlot> island, const DomainEvent::Cause& cause, double t);
   void find_islands(double t);
   bool leans(BodySlot slot) const;

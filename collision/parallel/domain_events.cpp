@@ -90,13 +90,13 @@ template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
   const auto& bodies = engine_.bodies();
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
-  if (!turns<Motion> && !bodies.fixed(a) && !bodies.fixed(b)) {
+  if (!bodies.fixed(a) && !bodies.fixed(b)) {
     record(kind, event);
     if (kind != Kind::rebound_suppressed) changed(a, event.contact.time), changed(b, event.contact.time);
     return;
   }
   const BodySlot carried = bodies.fixed(a) ? b : a, carrier = bodies.fixed(a) ? a : b;
-  if (turns<Motion> || bodies.fixed(carried) || !bodies.fixed(carrier) || known_[carrier].role != Role::unowned) {
+  if (bodies.fixed(carried) || !bodies.fixed(carrier) || known_[carrier].role != Role::unowned) {
     report_.divisible = false;
     return;
   }
@@ -110,10 +110,6 @@ void Domain<Motion>::rest(DomainEvent::Kind kind, const PairEvent& event) {
 
 template <class Motion>
 void Domain<Motion>::rest(DomainEvent::Kind kind, const WallEvent& event) {
-  if (turns<Motion>) {
-    report_.divisible = false;
-    return;
-  }
   const BodySlot slot = body_slot(event.body);
   const auto cause = cause_at(event.contact.time);
   if (logs_ && tells_of_wall(slot)) {
@@ -136,6 +132,14 @@ void Domain<Motion>::contact(World&, const PairEvent& event) {
   begin_cause(DomainEvent::Cause::Phase::contacts, key(event.a), key(event.b), event.contact.time);
   const BodySlot a = body_slot(event.a), b = body_slot(event.b);
   if (!resolves_ || engine_.bodies()[a].sensor || engine_.bodies()[b].sensor) return;
+  if constexpr (turns<Motion>) {
+    note_islands();
+    // Who does not rest yet, but is about to, would have to be known with what it lies on.
+    for (const BodySlot slot : {a, b}) {
+      const auto has_owner = [this](BodySlot fixed) { return known_[fixed].role != Role::unowned; };
+      if (engine_.parts().resting.lies_on(slot, has_owner)) report_.divisible = false;
+    }
+  }
   changed(a, event.contact.time);
   changed(b, event.contact.time);
 }

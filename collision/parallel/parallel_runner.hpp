@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -251,6 +252,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   /// Windows are so short that paths hardly bend.
   void begin_window() {
     window_begun_ = now_;
+    window_events_ = 0;
     longest_ = std::min(parallel_.longest_window, domains_.division().straight_for);
     domains_.set_window_end(window_begun_ + longest_);
   }
@@ -302,7 +304,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     commit(end);
     stretch_ = 0;
     const double elapsed = now_ - window_begun_;
-    if (length_.goes_on(elapsed, used) && now_ < window_begun_ + longest_) return;
+    // Where bodies hop on their places they use up no halo, but what is compared is all that they have done in it.
+    constexpr std::uint64_t most_events = 16;  // of each body that is known
+    const bool lasts = window_events_ <= most_events * domains_.outcome().known;
+    if (length_.goes_on(elapsed, used) && lasts && now_ < window_begun_ + longest_) return;
     length_.held(elapsed, used);
     ++counters_.windows;
     end_window();
@@ -336,6 +341,7 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
     counters_.bodies_owned += outcome.owned, counters_.bodies_known += outcome.known;
     counters_.copies_made += outcome.copies_made;
     ++counters_.steps;
+    window_events_ += outcome.computed;
     now_ = end;
   }
 
@@ -377,9 +383,10 @@ class BasicParallelWorld<BodyMotionType>::Runner final {
   const bool logs_;          ///< whether domains record events
   UntoldEvents untold_;
   WindowLength length_;
-  double window_begun_ = 0;  ///< s
-  double longest_ = 0;       ///< s: the longest that the window may be
-  double stretch_ = 0;       ///< s: how long the scene is run as one world before it is divided again; 0: to the end
+  double window_begun_ = 0;          ///< s
+  std::uint64_t window_events_ = 0;  ///< computed in it by all domains
+  double longest_ = 0;               ///< s: the longest that the window may be
+  double stretch_ = 0;  ///< s: how long the scene is run as one world before it is divided again; 0: to the end
   std::size_t windows_since_division_ = 0;
   const bool responds_;    ///< whether motions after contacts are known without a listener
   bool unstarted_ = true;  ///< no body has entered

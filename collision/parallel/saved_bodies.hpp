@@ -52,10 +52,9 @@ struct SavedBodies {
         turning.of.push_back(progress.body() ? std::optional(*progress.body()) : std::nullopt);
       }
       turning.check(bodies, rest.now);
-    } else {
-      for (std::size_t i = 0; i < numbers.size(); ++i) {
-        if (parcel.resting[i].state()) check_resting(i, *parcel.resting[i].state(), rest, options);
-      }
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (parcel.resting[i].state()) check_resting(i, *parcel.resting[i].state(), rest, options);
     }
     for (std::size_t i = 0; i < overlaps.size(); ++i) {
       const Overlap& overlap = overlaps[i];
@@ -98,6 +97,29 @@ struct SavedBodies {
       detail::check_numbers(contact, now, need);
       need(image::is_to_come(state.releases[k], now), "is to be let go before now");
     }
+  }
+  void check_resting(std::size_t i, const TurningRestProgress::State& state, const typename Engine<Motion>::Image& rest,
+                     const WorldOptions& options) const {
+    const auto need = [i](bool right, const char* what) { image::require(right, "resting", i, what); };
+    const double now = rest.now;
+    const BodySlot number = parcel.numbers[i];
+    need(parcel.bodies.bodies[i].entered, "is of a body that has not entered");
+    need(parcel.bodies.bodies[i].inverse_mass > 0 && options.response == Response::elastic,
+         "is of a fixed body, or in a mode without it");
+    need(state.since == never || image::is_past(state.since, now), "is not calm yet");
+    need(image::is_past(state.looked, now), "has not been looked at yet");
+    need(image::is_past(state.ignored.since, now), "has not been struck yet");
+    need(state.ignored.velocity.allFinite() && state.ignored.angular_velocity.allFinite(), "a velocity is not finite");
+    need(state.carrier.finite(), "the motion of what carries it is not finite");
+    bool holds = false;
+    for (std::size_t k = 0; k < state.links.size(); ++k) {
+      const auto& link = state.links[k];
+      need(link.other != number && link.other < rest.bodies.elsewhere.slots, "is with no body of the scene");
+      need(k == 0 || rest.bodies.before(state.links[k - 1].other, link.other), "is out of order");
+      check_numbers(link.pair, now, need);
+      holds = holds || link.pair.rests;
+    }
+    need(!state.rests || holds, "rests on nothing");
   }
 };
 

@@ -17,7 +17,7 @@ namespace kds::collision {
 namespace {
 
 /// The version of the image's layout: it changes with the members, so that bytes of another layout are refused as such.
-constexpr int snapshot_form = 19;
+constexpr int snapshot_form = 20;
 
 /// Options that decide events. Broad phase, window, threads and profile may differ.
 template <class Archive>

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <stdexcept>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -120,6 +121,12 @@ struct Lying final : RestingListener<RigidMotion<2>> {
   /// Of a ball and the floor.
   bool meet(BodySlot ball, const Contact& contact) {
     return rest.comes_to_rest(floor, ball, contact, [](BodySlot) { return Mobility::of_spherical(1, 1 / 0.4); });
+  }
+  /// Of two balls side by side.
+  bool meet_beside(BodySlot a, BodySlot b) {
+    const double x = bodies.path(a).coefficients[0][0] + 1;
+    return rest.comes_to_rest(a, b, {.time = clock.now, .point = {x, 0, 1}, .normal = {1, 0, 0}},
+                              [](BodySlot) { return Mobility::of_spherical(1, 1 / 0.4); });
   }
   bool is_still(BodySlot slot) const {
     const auto& c = bodies.path(slot).coefficients;
@@ -256,7 +263,7 @@ TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm 
   const BodySlot ball = part.add_ball(0);
   for (int flight = 0; flight < 8; ++flight) REQUIRE_FALSE(part.touch(ball, flight));
   CHECK(part.rest.empty());
-  CHECK_FALSE(part.rest.remembers_nothing());
+  CHECK_FALSE(part.rest.progress(ball).is_none());
   REQUIRE(part.touch(ball, 8.5));
   CHECK(part.rest.holds(part.floor, ball));
   CHECK(part.rest.carries(ball));
@@ -272,7 +279,7 @@ TEST_CASE("Rest of bodies that turn: a ball comes to rest when it has been calm 
   CHECK_FALSE(part.rest.solved());
   part.rest.solve();
   CHECK(part.rest.empty());
-  CHECK(part.rest.remembers_nothing());
+  CHECK(part.rest.progress(ball).is_none());
   CHECK(part.bodies.path(ball).coefficients[2] == Vector3d(0, 0, -Lying::gravity / 2));
   CHECK(part.told.back() == std::tuple(false, part.floor, ball));
 }
@@ -285,9 +292,127 @@ TEST_CASE("Rest of bodies that turn: one that moves is not calm, and has to be c
   fast.path.coefficients[1][0] = 1;
   part.bodies.move(ball, fast);
   CHECK_FALSE(part.meet(ball, {.time = part.clock.now, .normal = {0, 0, 1}}));
-  CHECK(part.rest.remembers_nothing());
+  CHECK(part.rest.progress(ball).is_none());
   for (int flight = 9; flight < 17; ++flight) CHECK_FALSE(part.touch(ball, flight));
   CHECK(part.touch(ball, 17.5));
+}
+
+TEST_CASE("Rest of bodies that turn: who lies with a body, or strikes who does, shares its island", "[turning]") {
+  using Slots = std::vector<BodySlot>;
+  using Islands = std::vector<Slots>;
+  Lying part;
+  const Slots balls{part.add_ball(0), part.add_ball(2), part.add_ball(4), part.add_ball(6)};
+  part.rest.shared().set_owned([&](BodySlot slot) { return slot == balls[0]; });
+  part.rest.begin_shared();
+  for (const BodySlot ball : balls) part.touch(ball, 0);
+  part.meet_beside(balls[2], balls[3]);
+  CHECK(part.rest.shared().take_shared().empty());  // of copies alone
+  CHECK(part.rest.shared().take_concerned().empty());
+  CHECK(part.rest.leans(balls[2]));
+  CHECK_FALSE(part.rest.leans(balls[1]));
+
+  part.meet_beside(balls[0], balls[1]);
+  CHECK(part.rest.shared().take_shared() == Slots{balls[1]});
+  CHECK(part.rest.shared().take_concerned() == Islands{Slots{balls[0], balls[1]}});
+  CHECK(part.rest.island(balls[1]) == Slots{balls[0], balls[1]});
+
+  part.rest.meet(balls[1], balls[2]);
+  CHECK(part.rest.shared().take_shared() == Slots{balls[2], balls[3]});
+  CHECK(part.rest.shared().take_concerned() == Islands{Slots{balls[0], balls[1]}, Slots{balls[2], balls[3]}});
+  part.rest.begin_shared();
+  CHECK(part.rest.shared().take_shared() == Slots{balls[1]});
+  CHECK(part.rest.shared().take_concerned().empty());
+
+  part.rest.take_touched();
+  auto fast = part.bodies.motion(balls[3]);
+  fast.path.coefficients[1][0] = 1;
+  part.bodies.move(balls[3], fast);
+  part.meet(balls[3], {.time = part.clock.now, .normal = {0, 0, 1}});
+  CHECK_FALSE(part.rest.leans(balls[2]));
+  const Slots touched = part.rest.take_touched();
+  CHECK(std::find(touched.begin(), touched.end(), balls[2]) != touched.end());
+  for (int flight = 1; flight <= 9 && !part.rest.carries(balls[0]); ++flight) {
+    for (const BodySlot ball : {balls[1], balls[0]}) part.touch(ball, flight);
+  }
+  REQUIRE(part.rest.carries(balls[0]));
+  const Slots stopped = part.rest.take_touched();
+  for (const BodySlot ball : {balls[0], balls[1]}) {
+    CHECK(std::find(stopped.begin(), stopped.end(), ball) != stopped.end());
+  }
+  part.rest.shared().take_concerned();
+  part.rest.drop_all(balls[0]);
+  part.rest.solve();
+  CHECK(part.rest.shared().take_concerned().front() == Slots{balls[0], balls[1]});
+
+  // Contacts that are remembered for a collapse link bodies for as long.
+  CHECK(part.rest.divisible());
+  part.rest.begin_shared();
+  part.rest.note_blow({.a = balls[0], .b = balls[3], .point = {0, 0, 0}, .normal = {1, 0, 0}, .time = part.clock.now});
+  CHECK(part.rest.shared().take_shared() == Slots{balls[3]});
+  CHECK(part.rest.island(balls[0]) == Slots{balls[0], balls[3]});
+  CHECK_FALSE(part.rest.divisible());
+  part.clock.now += 1e-8;
+  CHECK(part.rest.divisible());
+  CHECK_FALSE(part.rest.leans(balls[0]));
+}
+
+TEST_CASE("Rest of bodies that turn: another world goes on with all that lies with each other", "[turning]") {
+  Lying part, other;
+  const std::vector balls{part.add_ball(0), part.add_ball(2)};
+  for (const double x : {0.0, 2.0}) other.add_ball(x);
+  for (int flight = 0; flight < 8; ++flight) {
+    for (const BodySlot ball : balls) REQUIRE_FALSE(part.touch(ball, flight));
+    part.meet_beside(balls[0], balls[1]);
+  }
+  const auto same_slot = [](BodySlot number) { return number; };
+  const auto go_on = [&] {
+    for (const BodySlot ball : balls) {
+      other.bodies.move(ball, part.bodies.motion(ball));
+      other.rest.go_on_from(ball, part.rest.progress(ball), same_slot);
+    }
+    CHECK_NOTHROW(other.rest.require_listed());
+    for (const BodySlot ball : balls) CHECK(same_bits(other.rest.progress(ball), part.rest.progress(ball)));
+  };
+  go_on();
+  for (const BodySlot ball : balls) other.rest.let_go(ball);
+  CHECK(other.rest.progress(balls[0]).is_none());
+  other.rest.go_on_from(balls[0], part.rest.progress(balls[0]), same_slot);
+  CHECK_THROWS_AS(other.rest.require_listed(), std::runtime_error);
+  other.rest.let_go(balls[0]);
+  CHECK_THROWS_AS(other.rest.go_on_from(balls[0], part.rest.progress(balls[0]), [](BodySlot) { return no_body; }),
+                  std::runtime_error);
+  other.rest.let_go(balls[0]);
+
+  for (const BodySlot ball : balls) part.touch(ball, 8.5);  // They come to rest.
+  REQUIRE(part.rest.carries(balls[0]));
+  other.clock = part.clock;
+  go_on();
+  CHECK(other.rest.holds(other.floor, balls[0]));
+  other.rest.audit(other.clock.now);
+  part.rest.set_aside();
+  CHECK(part.rest.empty());
+  CHECK_FALSE(part.rest.kept(balls[0]).is_none());
+  part.rest.go_on();
+  CHECK(same_bits(other.rest.progress(balls[1]), part.rest.progress(balls[1])));
+  part.rest.audit(part.clock.now);
+}
+
+TEST_CASE("Rest of bodies that turn: what decides later when a body rests is in its progress", "[turning]") {
+  Lying part;
+  const std::vector balls{part.add_ball(0), part.add_ball(2)};
+  auto belt = part.bodies.motion(part.floor);
+  belt.path.coefficients[1][0] = 0x1p-10;
+  part.bodies.move(part.floor, belt);
+  for (int flight = 0; flight <= 8; ++flight) {
+    if (flight == 4) part.touch(balls[1], flight), part.meet_beside(balls[0], balls[1]);
+    REQUIRE_FALSE(part.touch(balls[0], flight));
+  }
+  const auto progress = part.rest.progress(balls[0]);
+  REQUIRE_FALSE(progress.is_none());
+  CHECK(progress.state()->since == 0);
+  CHECK(progress.state()->looked == part.clock.now);  // The other has not been calm for long enough.
+  CHECK(progress.state()->carrier.velocity == Vector3d(0x1p-10, 0, 0));
+  CHECK(progress.state()->links.size() == 2);
 }
 
 TEST_CASE("Rest of bodies that turn: what wakes together gets its motions by slot", "[turning]") {

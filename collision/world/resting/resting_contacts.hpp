@@ -9,6 +9,7 @@
 #include "collision/world/resting/contact_gaps.hpp"
 #include "collision/world/resting/resting_contact.hpp"
 #include "collision/world/resting/resting_progress.hpp"
+#include "collision/world/resting/shared_islands.hpp"
 #include "collision/world/turning/turning_rest.hpp"
 #include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
@@ -70,12 +71,6 @@ class RestingListener {
 
  protected:
   ~RestingListener() = default;
-};
-
-/// Thrown where bodies that turn would come to rest, in a world whose bodies belong to another one (transfer.cpp): such
-/// bodies are not divided among worlds.
-struct RestsInPart : std::exception {
-  const char* what() const noexcept override { return "World: a part of a world, in which bodies come to rest"; }
 };
 
 /// The resting contacts of a world: which there are, how the bodies move that rest on each other, and when they part.
@@ -224,15 +219,9 @@ class RestingContacts {
   bool leans(BodySlot id) const;
   /// Its island: the bodies that lean on each other, directly or not, and are not fixed; in their order.
   std::vector<BodySlot> island(BodySlot id) const;
-  /// A world whose bodies belong to another one, and which may have some of them as copies: which are its own.
-  void set_owned(std::function<bool(BodySlot)> owned) { owned_ = std::move(owned); }
-  /// Of islands that have own bodies and copies, all bodies are *shared*, from now on or when they become one, until
-  /// this is called again.
+  SharedIslands& shared() { return shared_; }
+  /// SharedIslands::begin(), with the islands that there are.
   void begin_shared();
-  /// The copies that have come to be shared since this was called last.
-  std::vector<BodySlot> take_shared() { return std::exchange(newly_shared_, {}); }
-  /// The islands of shared bodies that something has happened to since this was called last, some several times.
-  std::vector<std::vector<BodySlot>> take_concerned() { return std::exchange(concerned_, {}); }
 
   /// Checks all contacts, once the bodies have the motions that these allow; throws AuditFailure.
   void audit(double t) const;
@@ -337,8 +326,6 @@ class RestingContacts {
 
   // resting_transfer.cpp
   Slot listed_by_other(const Contact& contact, BodySlot id) const;
-  bool is_shared(BodySlot id) const { return id < shared_.size() && shared_[id]; }
-  void share(BodySlot id);
   void note_shared(BodySlot a, BodySlot b);
   void note_struck(const Contact& contact);
   void note_concerned(const Island& island);
@@ -362,12 +349,9 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
   detail::RestingEvent last_event_;
   std::vector<BodySlot> solved_;
-  std::vector<Progress> kept_;                    ///< by body, up to the last of which there is any
-  std::size_t half_listed_ = 0;                   ///< contacts that only one of two bodies that are not fixed lists
-  std::function<bool(BodySlot)> owned_;           ///< null: all are
-  std::vector<char> shared_;                      ///< by body
-  std::vector<BodySlot> newly_shared_;            ///< take_shared()
-  std::vector<std::vector<BodySlot>> concerned_;  ///< take_concerned()
+  std::vector<Progress> kept_;   ///< by body, up to the last of which there is any
+  std::size_t half_listed_ = 0;  ///< contacts that only one of two bodies that are not fixed lists
+  SharedIslands shared_;
 };
 
 /// The part of a world that knows what rests in it: contacts that last, or, where bodies turn, groups that lie still.

@@ -41,6 +41,14 @@ class RestingProgress {
   const State* state() const { return state_.get(); }
   bool met() const { return met_; }
   bool is_none() const { return !state_ && !met_; }
+  /// Calls take(number) for each body with which this one, by its number, has a contact.
+  template <class Take>
+  void each_other(BodySlot self, const Take& take) const {
+    if (!state_) return;
+    for (const auto& contact : state_->contacts) {
+      if (contact.b != no_body) take(contact.a == self ? contact.b : contact.a);
+    }
+  }
 
   template <class Archive>
   void archive(Archive& archive) {

@@ -148,27 +148,17 @@ std::vector<BodySlot> RestingContacts<Motion>::island(BodySlot id) const {
 
 template <class Motion>
 void RestingContacts<Motion>::begin_shared() {
-  shared_.clear(), newly_shared_.clear(), concerned_.clear();
+  shared_.begin();
   for (const Contact& contact : contacts_) {
     if (contact.alive) note_shared(contact.a, contact.b);
   }
 }
 
 /// Two bodies lean on each other, or one strikes what the other leans on: that is one island, or might have been.
-/// Either all bodies of an island are shared, or all are own ones, or all are copies.
 template <class Motion>
 void RestingContacts<Motion>::note_shared(BodySlot a, BodySlot b) {
-  if (!owned_ || b == no_body || bodies_.fixed(a) || bodies_.fixed(b)) return;
-  if (is_shared(a) || is_shared(b) || owned_(a) != owned_(b)) share(a), share(b);
-}
-
-template <class Motion>
-void RestingContacts<Motion>::share(BodySlot id) {
-  if (is_shared(id)) return;
-  if (shared_.size() < bodies_.slots()) shared_.resize(bodies_.slots());
-  for (const BodySlot each : island(id)) {
-    if (std::exchange(shared_[each], 1) == 0 && !owned_(each)) newly_shared_.push_back(each);
-  }
+  if (!shared_.any_copies() || b == no_body || bodies_.fixed(a) || bodies_.fixed(b)) return;
+  shared_.link(a, b, [this](BodySlot id) { return island(id); });
 }
 
 /// What two bodies do that meet depends on all that they lean on.
@@ -176,7 +166,7 @@ template <class Motion>
 void RestingContacts<Motion>::note_struck(const Contact& contact) {
   if (contact.b != no_body && (leans(contact.a) || leans(contact.b))) note_shared(contact.a, contact.b);
   for (const BodySlot id : {contact.a, contact.b}) {
-    if (id != no_body && is_shared(id) && leans(id)) concerned_.push_back(island(id));
+    if (id != no_body && shared_.is_shared(id) && leans(id)) shared_.concern(island(id));
   }
 }
 
@@ -185,7 +175,7 @@ void RestingContacts<Motion>::note_concerned(const Island& island) {
   if (island.free < 2) return;
   const auto end = island.bodies.begin() + static_cast<std::ptrdiff_t>(island.free);
   for (auto id = island.bodies.begin(); id != end; ++id) listener_->tell_touched(*id);
-  if (is_shared(island.bodies.front())) concerned_.emplace_back(island.bodies.begin(), end);
+  if (shared_.is_shared(island.bodies.front())) shared_.concern({island.bodies.begin(), end});
 }
 
 template <class Motion>

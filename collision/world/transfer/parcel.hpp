@@ -27,12 +27,8 @@ struct Parcel {
     archive(numbers);
     bodies.archive_bodies(archive);
     archive(to_come);
-    if constexpr (turns<Motion>) {
-      archive(turning);
-      resting.resize(to_come.size());
-    } else {
-      archive(resting);
-    }
+    if constexpr (turns<Motion>) archive(turning);
+    archive(resting);
   }
 };
 

@@ -93,7 +93,9 @@ Collapse TurningBounces<Motion>::part_together(BodySlot a, BodySlot b, const Con
     ++counters_.motion_updates;
     motions_.set(slot, motion, false);
     const BodyId id = bodies_.id_of(slot);
-    if (slot != a && slot != b) reports_.add(Reports::Kind::moved, id, id, {.time = t});
+    if (slot == a || slot == b) continue;
+    reports_.add(Reports::Kind::moved, id, id, {.time = t});
+    resting_.touch(slot);
   }
   return Collapse::parted;
 }

@@ -40,24 +40,32 @@ typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlo
   return it != pairs_.end() && it->second.rests ? 0 : none;
 }
 
-/// Member::looked and Member::ignored of a body matter only while it is calm or rests, so they are not asked.
 template <class Motion>
-bool TurningRest<Motion>::remembers_nothing() const {
-  return pairs_.empty() && woken_.empty() && !blows_.any(clock_.now) &&
-         std::all_of(of_.begin(), of_.end(), [](const Member& member) { return member.since == never; });
+typename TurningRest<Motion>::Pair& TurningRest<Motion>::pair(Key key) {
+  const auto it = pairs_.find(key);
+  if (it != pairs_.end()) return it->second;
+  Pair& pair = list(key);
+  note_linked(key.first, key.second);
+  return pair;
+}
+
+/// A pair that there has not been.
+template <class Motion>
+typename TurningRest<Motion>::Pair& TurningRest<Motion>::list(Key key) {
+  for (const auto& [slot, other] : {key, Key(key.second, key.first)}) {
+    auto& others = member(slot).others;
+    others.insert(std::lower_bound(others.begin(), others.end(), other, before()), other);
+  }
+  return pairs_[key];
 }
 
 template <class Motion>
-typename TurningRest<Motion>::Pair& TurningRest<Motion>::pair(Key key) {
-  const auto [it, is_new] = pairs_.try_emplace(key);
-  if (is_new) {
-    const auto list = [this](BodySlot slot, BodySlot other) {
-      auto& others = member(slot).others;
-      others.insert(std::lower_bound(others.begin(), others.end(), other, before()), other);
-    };
-    list(key.first, key.second), list(key.second, key.first);
+void TurningRest<Motion>::unlist(Key key) {
+  for (const auto& [slot, other] : {key, Key(key.second, key.first)}) {
+    auto& others = of_[slot].others;
+    others.erase(std::lower_bound(others.begin(), others.end(), other, before()));
   }
-  return it->second;
+  pairs_.erase(key);
 }
 
 template <class Motion>
@@ -68,12 +76,8 @@ void TurningRest<Motion>::erase(Key key) {
     listener_->tell_resting(false,
                             {.a = key.first, .b = key.second, .normal = it->second.normal, .point = it->second.point});
   }
-  pairs_.erase(it);
-  const auto unlist = [this](BodySlot slot, BodySlot other) {
-    auto& others = of_[slot].others;
-    others.erase(std::lower_bound(others.begin(), others.end(), other, before()));
-  };
-  unlist(key.first, key.second), unlist(key.second, key.first);
+  unlist(key);
+  touch(key.first), touch(key.second);
 }
 
 template <class Motion>
@@ -84,6 +88,7 @@ void TurningRest<Motion>::erase_all(BodySlot slot) {
 /// Wakes all bodies of the group of one that rests.
 template <class Motion>
 void TurningRest<Motion>::wake(BodySlot slot) {
+  if (shared_.is_shared(slot)) shared_.concern(island(slot));
   std::vector<BodySlot> group{slot};
   of_[slot].rests = false;
   for (std::size_t i = 0; i < group.size(); ++i) {
@@ -109,6 +114,7 @@ void TurningRest<Motion>::wake_only(std::span<const BodySlot> slots) {
 
 template <class Motion>
 bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
+  note_struck(a, b);
   if (resting_ == 0 || !(carries(a) || carries(b))) return false;
   // What touches a resting body gently may come to lie on it. Until that is known the body goes on resting.
   const double g = scale({a, b}).acceleration;
@@ -125,8 +131,8 @@ bool TurningRest<Motion>::meet(BodySlot a, BodySlot b) {
 
 template <class Motion>
 std::vector<detail::Blow> TurningRest<Motion>::note_blow(const detail::Blow& blow) {
-  if (bodies_.numbered()) throw RestsInPart();
   blows_.note(blow, same_place * scale({blow.a, blow.b}).size);
+  note_linked(blow.a, blow.b);
   return blows_.of_last([this](BodySlot slot) { return !bodies_.fixed(slot) && !carries(slot); });
 }
 
@@ -134,6 +140,7 @@ template <class Motion>
 void TurningRest<Motion>::drop_all(BodySlot slot) {
   blows_.forget(slot);
   if (slot >= of_.size()) return;
+  if (shared_.is_shared(slot)) shared_.concern(island(slot));
   if (carries(slot)) wake(slot);
   const std::vector<BodySlot> others = of_[slot].others;  // which leave it when they wake
   for (const BodySlot other : others) {
@@ -141,6 +148,7 @@ void TurningRest<Motion>::drop_all(BodySlot slot) {
   }
   erase_all(slot);
   of_[slot].since = never, of_[slot].looked = -never;
+  touch(slot);
   std::erase(woken_, slot);  // it has a motion of its own
 }
 
@@ -293,7 +301,6 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     }
     return false;
   }
-  if (bodies_.numbered()) throw RestsInPart();
   note({a, b}, contact, *carrier);
   bool long_enough = true, patient = true;
   for (const BodySlot slot : {a, b}) {
@@ -334,6 +341,7 @@ bool TurningRest<Motion>::comes_to_rest(BodySlot a, BodySlot b, const collision:
     any = any || (holds && !carries(slot));
     if (holds) continue;
     of_[slot].looked = t;
+    touch(slot);
     if (carries(slot)) too_weak.push_back(slot);
   }
   wake_only(too_weak);
@@ -362,6 +370,7 @@ void TurningRest<Motion>::stop(const Group& group, const collision::Contact& con
     pair.point = (key == met ? contact.point : a.out(place.on_a)) - a.origin();
     pair.rests = true;
     ++resting_;
+    touch(key.first), touch(key.second);
     listener_->tell_resting(true, {.a = key.first, .b = key.second, .normal = pair.normal, .point = pair.point});
   }
   for (const BodySlot slot : group.bodies) {

@@ -10,8 +10,10 @@
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
 #include "collision/world/resting/resting_contact.hpp"
+#include "collision/world/resting/shared_islands.hpp"
 #include "collision/world/turning/carrier.hpp"
 #include "collision/world/turning/collapse.hpp"
+#include "collision/world/turning/turning_rest_progress.hpp"
 #include "collision/world/world_part.hpp"
 #include "collision/world_options.hpp"
 #include "kds/arithmetic/lattice.hpp"
@@ -19,6 +21,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,35 +35,6 @@ namespace kds::collision {
 
 template <class Motion>
 class RestingListener;
-
-namespace detail {
-
-/// Where two bodies have touched: the same point in the coordinates of each.
-struct TouchedPlace {
-  Eigen::Vector3d on_a, on_b;
-  Eigen::Vector3d normal;  ///< unit, from a to b, in the world
-  double time;             ///< s
-};
-
-/// Two bodies that lie on each other, or hop on each other so gently that they may soon.
-struct LyingPair {
-  bool rests = false;
-  std::vector<TouchedPlace> places;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< of the contact with which they came to rest, from a's centre
-};
-
-template <class Archive>
-void archive_members(Archive& archive, LyingPair& pair) {
-  archive(pair.rests);
-  image::vector(archive, pair.normal), image::vector(archive, pair.point);
-  archive.each(pair.places, [&](TouchedPlace& place) {
-    image::vector(archive, place.on_a), image::vector(archive, place.on_b), image::vector(archive, place.normal);
-    archive(place.time);
-  });
-}
-
-}  // namespace detail
 
 /// Rest in worlds of bodies that turn: not of contacts that roll, but of groups of bodies that do not move at all, or
 /// only with what carries them. Of contacts that slide those with a half-space that goes on below what is held fast, as
@@ -100,27 +74,6 @@ class TurningRest {
   void set_listener(Listener& listener) { listener_ = &listener; }
 
   bool empty() const { return resting_ == 0; }
-  /// Whether nothing is remembered that decides what comes to rest later.
-  bool remembers_nothing() const;
-  /// As RestingContacts: worlds are divided only where there is nothing of this part.
-  struct Progress {
-    template <class Archive>
-    void archive(Archive&) {}
-    friend bool same_bits(const Progress&, const Progress&) { return true; }
-  };
-  bool divisible() const { return remembers_nothing(); }
-  static Progress progress(BodySlot) { return {}; }
-  static Progress kept(BodySlot) { return {}; }
-  static void keep(BodySlot, const Progress&) {}
-  static void forget_kept() {}
-  static void go_on_from(BodySlot, const Progress&, const std::function<BodySlot(BodySlot)>&) {}
-  static void require_listed() {}
-  static void let_go(BodySlot) {}
-  static void set_aside() {}
-  static void go_on() {}
-  static detail::RestingEvent last_event() { return {}; }
-  static std::vector<BodySlot> take_solved() { return {}; }
-
   bool holds(BodySlot a, BodySlot b, int = -1) const { return find(a, b) != none; }
   /// Not `none` if a and b, in their order, rest on each other.
   Slot find(BodySlot a, BodySlot b, int = -1) const;
@@ -148,7 +101,10 @@ class TurningRest {
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
-  void forget(BodySlot slot) { drop_all(slot); }
+  void forget(BodySlot slot) {
+    drop_all(slot);
+    if (slot < kept_.size()) kept_[slot] = {};
+  }
   /// The same if it has touched a body that it may not collide with any more; otherwise forgets only its contacts of a
   /// collapse, and returns false.
   bool drop_filtered(BodySlot slot);
@@ -167,17 +123,47 @@ class TurningRest {
   /// Throws AuditFailure unless bodies that rest move with what they rest on.
   void audit(double t) const;
 
-  /// How impulses that were too small to wake a body at rest would make it move if it lay on nothing.
-  struct Ignored {
-    double since = -never;  ///< s
-    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-    Eigen::Vector3d angular_velocity = Eigen::Vector3d::Zero();
+  // turning_rest_transfer.cpp: bodies that several worlds have, each a part of them (transfer.cpp).
+  using Progress = TurningRestProgress;
+  /// Whether the progress of each body is all there is: nothing is still to be solved, and no contacts are remembered
+  /// that a collapse may have to be resolved with.
+  bool divisible() const { return solved() && !blows_.any(clock_.now); }
+  Progress progress(BodySlot slot) const;
+  /// As RestingContacts, as are the next seven.
+  void go_on_from(BodySlot slot, const Progress& progress, const std::function<BodySlot(BodySlot)>& slot_of);
+  void require_listed();
+  void let_go(BodySlot slot);
+  void set_aside();
+  void go_on();
+  const Progress& kept(BodySlot slot) const;
+  void keep(BodySlot slot, const Progress& progress);
+  void forget_kept() { kept_.clear(); }
+  static detail::RestingEvent last_event() { return {}; }  ///< it has none of its own
+  static std::vector<BodySlot> take_solved() { return {}; }
 
-    template <class Archive>
-    void archive(Archive& archive) {
-      archive(since, velocity, angular_velocity);
-    }
-  };
+  /// The bodies that are not fixed on which one depends, its island: those with which it lies, or is about to, or has a
+  /// collapse, directly or through others; in their order.
+  std::vector<BodySlot> island(BodySlot slot) const;
+  /// Whether there are others in it.
+  bool leans(BodySlot slot) const;
+  SharedIslands& shared() { return shared_; }
+  /// SharedIslands::begin(), with the islands that there are.
+  void begin_shared();
+  /// A collapse gives a body another motion.
+  void touch(BodySlot slot) {
+    if (shared_.any_copies()) touched_.push_back(slot);
+  }
+  /// In a world that may have copies: the bodies of which the motion has changed, or the progress, since this was
+  /// called last, some several times. Of two bodies that meet only what is not theirs alone.
+  std::vector<BodySlot> take_touched() { return std::exchange(touched_, {}); }
+  /// Whether a body lies, or is about to, on a fixed one of which this is true.
+  template <class Is>
+  bool lies_on(BodySlot slot, const Is& is) const {
+    if (slot >= of_.size() || bodies_.fixed(slot)) return false;
+    return std::ranges::any_of(of_[slot].others, [&](BodySlot other) { return bodies_.fixed(other) && is(other); });
+  }
+
+  using Ignored = turning_rest::Ignored;
 
   /// All of it, as plain data.
   struct Image {
@@ -247,6 +233,8 @@ class TurningRest {
     return [this](BodySlot a, BodySlot b) { return bodies_.before(a, b); };
   }
   Pair& pair(Key key);
+  Pair& list(Key key);
+  void unlist(Key key);
   void erase(Key key);
   void erase_all(BodySlot slot);
   void wake(BodySlot slot);
@@ -275,6 +263,12 @@ class TurningRest {
   Group held_part(Group group, bool removed) const;
   void stop(const Group& group, const collision::Contact& contact, Key met);
 
+  // turning_rest_transfer.cpp
+  template <class Take>
+  void each_partner(BodySlot slot, const Take& take) const;
+  void note_linked(BodySlot a, BodySlot b);
+  void note_struck(BodySlot a, BodySlot b);
+
   const Bodies<Motion>& bodies_;
   const double flight_;
   const Clock& clock_;
@@ -285,6 +279,10 @@ class TurningRest {
   std::size_t resting_ = 0;  ///< pairs that rest
   std::uint64_t walks_ = 0;
   detail::Blows blows_;
+  std::vector<Progress> kept_;     ///< by body, up to the last of which there is any
+  std::size_t half_listed_ = 0;    ///< pairs of bodies that are not fixed of which only one has gone on
+  std::vector<BodySlot> touched_;  ///< take_touched()
+  SharedIslands shared_;
 };
 
 #ifdef KDS_TURNING

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 
 namespace kds::collision {
@@ -17,11 +18,14 @@ template <class Motion>
 typename TurningRest<Motion>::Image TurningRest<Motion>::image() const {
   Image image;
   for (const auto& [key, pair] : pairs_) image.pairs.push_back({key.first, key.second, pair});
-  for (const Member& member : of_) {
+  // What decides nothing any more is left out: so it makes no difference which world has been told of the bodies.
+  std::size_t last = of_.size();
+  while (last > 0 && of_[last - 1].others.empty() && of_[last - 1].since == never) --last;
+  for (const Member& member : std::span(of_).first(last)) {
     image.since.push_back(member.since);
-    image.looked.push_back(member.looked);
+    image.looked.push_back(member.looked > member.since ? member.looked : -never);
     image.rests.push_back(member.rests);
-    image.ignored.push_back(member.ignored);
+    image.ignored.push_back(member.rests ? member.ignored : Ignored());
     image.carriers.push_back(member.others.empty() ? turning_rest::Carrier{} : member.carrier);
   }
   image.woken = woken_;
@@ -52,7 +56,6 @@ void TurningRest<Motion>::become(const Image& image) {
 template <class Motion>
 void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bodies, double now,
                                        const WorldOptions& options) const {
-  constexpr double unit_rounding = 0x1p-40;  // far above that of a normalisation
   if (rests.size() != since.size() || looked.size() != since.size() || ignored.size() != since.size() ||
       carriers.size() != since.size())
     image::fail("resting: is not of as many bodies as are calm");
@@ -65,13 +68,8 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
     need(bodies.before(a, b) && std::max(a, b) < since.size() && bodies.entered(a) && bodies.entered(b),
          "is not of two bodies in the world");
     need(i == 0 || std::pair(pairs[i - 1].a, pairs[i - 1].b) < std::pair(a, b), "is out of order");
-    need(pair.normal.allFinite() && pair.point.allFinite(), "its contact is not finite");
+    check_numbers(pair, now, need);
     if (pair.rests) held[a] = held[b] = 1;
-    for (const detail::TouchedPlace& place : pair.places) {
-      need(place.on_a.allFinite() && place.on_b.allFinite(), "a place is not finite");
-      need(std::abs(place.normal.norm() - 1) <= unit_rounding, "a normal has no unit length");
-      need(image::is_past(place.time, now), "they have not touched yet");
-    }
   }
   for (std::size_t i = 0; i < since.size(); ++i) {
     image::require(since[i] == never || image::is_past(since[i], now), "resting bodies", i, "is not calm yet");
@@ -85,6 +83,7 @@ void TurningRest<Motion>::Image::check(const typename Bodies<Motion>::Image& bod
   for (std::size_t i = 0; i < woken.size(); ++i) {
     image::require(bodies.entered(woken[i]), "woken", i, "is no body in the world");
   }
+  constexpr double unit_rounding = 0x1p-40;  // far above that of a normalisation
   for (std::size_t i = 0; i < blows.size(); ++i) {
     const auto& [a, b, point, normal, time, least] = blows[i];
     const auto need = [i](bool right, const char* what) { image::require(right, "blows", i, what); };

@@ -62,12 +62,12 @@ void change_pile(World<Degree>& world, const Event& event, std::uint64_t seed, s
   world.update_motion(id, motion<Degree>(random.one_in(2) ? place : Vector(place + 4 * some), 3 * some, gravity, t));
 }
 
-/// As compare_runs(), of one process whose listener makes such changes at some events, and which is saved on the way
-/// and goes on from that. Returns how many changes it has asked for.
-template <int Degree>
-std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& scene, Manner manner,
-                              std::uint64_t seed, Seen& seen) {
-  using Path = certificates::PointMotion<Degree>;
+/// As compare_runs(), of one process whose listener makes changes at some events, and which is saved on the way and
+/// goes on from that. `change`: called with the world, the event, the seed, the number of the event, and how many
+/// bodies there were. Returns how many changes it has asked for.
+template <class Motion, class Change>
+std::uint64_t compare_changed_by(const Staging<Motion>& scene, Manner manner, std::uint64_t seed, Seen& seen,
+                                 const Change& change) {
   manner.processes = 1;
   std::ostringstream how;
   how << scene.what << ", " << manner.parallel.threads << " threads, " << manner.parallel.domains << " domains, halo "
@@ -76,24 +76,24 @@ std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& 
   const std::uint64_t one_in = seed % 3 == 0 ? 4 : seed % 3 == 1 ? 15 : 60;
   const double until = 0.7 * scene.end_time;
   const auto changes_at = [=](std::size_t k, double t) { return t < until && Random(seed + 77 * k).one_in(one_in); };
-  WholeLog<Path> right;
-  World<Degree> one(scene.options, &right);
+  WholeLog<Motion> right;
+  BasicWorld<Motion> one(scene.options, &right);
   scene.fill(one);
   const std::size_t bodies = one.size();
-  right.then = [&](World<Degree>& world) {
+  right.then = [&](BasicWorld<Motion>& world) {
     const std::size_t k = right.events.size();
-    if (changes_at(k, world.now())) change_pile<Degree>(world, right.events.back(), seed, k, bodies);
+    if (changes_at(k, world.now())) change(world, right.events.back(), seed, k, bodies);
   };
   one.advance_to(scene.end_time);
   std::uint64_t asked = 0;
   DividedLog log;
-  auto divided = std::make_unique<ParallelWorld<Degree>>(scene.options, manner.parallel, &log);
+  auto divided = std::make_unique<BasicParallelWorld<Motion>>(scene.options, manner.parallel, &log);
   scene.fill(divided->whole());
   log.then = [&](const Event& event) {
     const std::size_t k = log.events.size();
     if (!changes_at(k, event.contact.time)) return;
     ++asked;
-    divided->change([=](World<Degree>& world) { change_pile<Degree>(world, event, seed, k, bodies); });
+    divided->change([=](BasicWorld<Motion>& world) { change(world, event, seed, k, bodies); });
   };
   Random random(seed);
   StateInParts state(1);
@@ -117,7 +117,7 @@ std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& 
         whole = save(*divided);
       auto other = manner.parallel;
       other.domains = 2 + random.below(5), other.halo = random.between(0.5, 3);
-      divided = std::make_unique<ParallelWorld<Degree>>(scene.options, other, &log);
+      divided = std::make_unique<BasicParallelWorld<Motion>>(scene.options, other, &log);
       const auto blocks = way.blocks();
       if (parts)
         divided->load_parts(way.rest, share_of(blocks, 0, 1));
@@ -134,13 +134,19 @@ std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& 
   const auto blocks = state.blocks();
   run_by(others, [&](Processes* processes, std::size_t rank) {
     DividedLog told;
-    ParallelWorld<Degree> world(scene.options, manner.parallel, &told, processes);
+    BasicParallelWorld<Motion> world(scene.options, manner.parallel, &told, processes);
     world.load_parts(state.rest, share_of(blocks, rank, others));
     world.advance_to(scene.end_time);
     if (rank == 0) require_same(later, told.events, what + ", gone on");
     world.whole().audit();
   });
   return asked;
+}
+
+template <int Degree>
+std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& scene, const Manner& manner,
+                              std::uint64_t seed, Seen& seen) {
+  return compare_changed_by(scene, manner, seed, seen, change_pile<Degree>);
 }
 
 /// Of some seeds.

@@ -1,23 +1,29 @@
 // Bodies that turn, in domains: the events are those of one world, bit for bit.
 #include "tests/collision/parallel/bending_stagings.hpp"
+#include "tests/collision/parallel/changed_piles.hpp"
 #include "tests/collision/parallel/contact_laws.hpp"
 #include "tests/collision/parallel/stagings.hpp"
+#include "tests/collision_turning/parallel/turning_piles.hpp"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace kds::collision::test_turning_domains {
 namespace {
 
 using certificates::RigidMotion;
 using Eigen::Vector3d;
+using tests::compare_changed_by;
 using tests::compare_runs;
+using tests::compare_seeds;
 using tests::compare_stagings;
 using tests::Manner;
 using tests::Random;
 using tests::Seen;
+using tests::TurningPileMaker;
 
 }  // namespace
 
@@ -79,7 +85,7 @@ TEST_CASE("Domains: rods that precess go from domain to domain", "[parallel]") {
   CHECK(seen.events > 100);
 }
 
-TEST_CASE("Domains: balls that turn fall, and what comes to rest makes the scene one world", "[parallel]") {
+TEST_CASE("Domains: balls that turn fall and come to rest, and none of it is run as one world", "[parallel]") {
   const auto fill = [](TurningWorld<2>& world) {
     for (int i = 0; i < 40; ++i) {
       TurningWorld<2>::Description ball{.shape = Sphere{0.25}, .restitution = 0.3, .friction = 0.5};
@@ -96,13 +102,49 @@ TEST_CASE("Domains: balls that turn fall, and what comes to rest makes the scene
   for (const std::size_t processes : {1u, 2u}) {
     Manner manner{.processes = processes, .polls = 2};
     manner.parallel.threads = 2, manner.parallel.domains = 4, manner.parallel.halo = 1;
-    manner.parallel.longest_window = 0.004;
+    manner.parallel.longest_window = 0.1;
     compare_runs<RigidMotion<2>>({tests::with_response(Response::elastic), fill, 1, "falling"}, manner, seen);
   }
   INFO(seen.text());
+  CHECK(seen.tables == 2);
   CHECK(seen.windows > 0);
-  CHECK(seen.whole > 0);
-  CHECK(seen.events > 100);
+  CHECK(seen.rests >= 80);
+}
+
+TEST_CASE("Domains: rows of crates come to rest across borders and are struck", "[parallel]") {
+  WorldOptions options = tests::with_response(Response::elastic);
+  options.shortest_flight = 0.01;
+  Seen seen;
+  for (const std::size_t processes : {1u, 2u}) {
+    Manner manner{.processes = processes, .polls = 2};
+    manner.parallel.threads = 1, manner.parallel.domains = processes + 1, manner.parallel.halo = 2.5;
+    manner.parallel.longest_window = 0.25;
+    compare_runs<RigidMotion<2>>({options, tests::add_struck_crates, 0.8, "crates"}, manner, seen);
+  }
+  INFO(seen.text());
+  CHECK(seen.tables == 2);
+  CHECK(seen.windows > 10);
+  CHECK(seen.rests > 100);
+}
+
+TEST_CASE("Domains: piles of bodies that turn have the events of one world", "[parallel]") {
+  Seen seen;
+  for (const std::uint64_t seed : {20u, 25u})
+    compare_seeds<TurningPileMaker>("KDS_TURNING_PILE_SEEDS", seed, 1, 8, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 1000);
+  CHECK(seen.corrected > 3);
+  CHECK(seen.rests > 5);
+}
+
+TEST_CASE("Domains: a listener that changes piles of bodies that turn has the events of one world", "[parallel]") {
+  TurningPileMaker maker(1);
+  const auto scene = maker.scene();
+  Seen seen;
+  const std::uint64_t asked = compare_changed_by(scene, maker.manner(8), 1, seen, tests::change_turning_pile);
+  INFO("changes " << asked << ", " << seen.text());
+  CHECK(asked > 20);
+  CHECK(seen.rests > 5);
 }
 
 }  // namespace kds::collision::test_turning_domains
