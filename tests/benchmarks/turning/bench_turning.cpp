@@ -1,6 +1,7 @@
 // Pairs of bodies that turn: time and missed contacts, beside FCL and Bullet.
 #include "collision/narrow_phase/narrow_phase.hpp"
 #include "collision/shapes/compound.hpp"
+#include "collision/shapes/convex_hull.hpp"
 #include "tests/benchmarks/csv_file.hpp"
 #include "tests/benchmarks/thread_time.hpp"
 #include "tests/benchmarks/turning/random_boxes.hpp"
@@ -71,6 +72,18 @@ double tables_here(const Query& query) {
   return contact_of_two(table, query);
 }
 
+/// Hulls of random points on a ball.
+template <int Corners>
+double hulls_here(const Query& query) {
+  static const PlacedShape hull = [] {
+    Random random(1);
+    std::vector<Vector3d> points;
+    for (int i = 0; i < Corners; ++i) points.push_back(0.6 * between(random, 1).normalized());
+    return place(convex_hull(points), Eigen::Quaterniond::Identity());
+  }();
+  return contact_of_two(hull, query);
+}
+
 struct Row {
   double microseconds;  ///< median
   int contacts;
@@ -118,7 +131,10 @@ int main(int argc, char** argv) {
        {Scene{"boxes", random_boxes, here, true}, Scene{"rod and plate", rod_and_plate, here, true},
         Scene{"capsules", random_boxes, capsules_here, false},
         Scene{"capsule, box", random_boxes, capsule_and_box_here, false},
-        Scene{"dumb-bells", random_boxes, dumb_bells_here, false}, Scene{"tables", random_boxes, tables_here, false}}) {
+        Scene{"dumb-bells", random_boxes, dumb_bells_here, false}, Scene{"tables", random_boxes, tables_here, false},
+        Scene{"hulls of 8", random_boxes, hulls_here<8>, false},
+        Scene{"hulls of 40", random_boxes, hulls_here<40>, false},
+        Scene{"hulls of 128", random_boxes, hulls_here<128>, false}}) {
     for (const double turn : {0.01, 0.1, 1.0, 10.0, 100.0, 1000.0}) {
       Random random(1);
       std::vector<Query> queries;
