@@ -1,16 +1,18 @@
-// Where bodies that may rest on each other are, and whether they move.
+// Where bodies that may rest on each other are, whether they move, and on which of their faces they lie.
 #pragma once
 
 #include "certificates/turning/turned_orientation.hpp"
 #include "collision/shapes/polytope.hpp"
 #include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
+#include "collision/world/turning/rest_rules.hpp"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 namespace kds::collision::turning_rest {
@@ -95,6 +97,26 @@ bool all_slower(const Motion& motion, const Vector3d& velocity, const PlacedShap
   const BodyFrame frame(motion, t);
   const Vector3d axis = frame.back(frame.origin() + motion.angular_velocity) / rate;
   return flies + rate * reach_about(shape, axis).value_or(radius) <= speed;
+}
+
+/// How much faster than those of one corner the flights of all corners of the face make a hull that lies on it. `down`:
+/// along its weight, of any length. Balls may be null.
+template <class Motion>
+double driven_by_corners(const PlacedShape* shape, const Motion& motion, const Vector3d& down, double t) {
+  const Polytope* const hull = shape ? polytope_of(shape->shape) : nullptr;
+  if (!hull) return 1;
+  const auto& faces = hull->structure().faces;
+  std::size_t most = 0;
+  std::optional<Vector3d> in_hull;  // down, in its axes
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (faces[i].size() <= std::max(most, calm_corners)) continue;
+    if (!in_hull) {
+      const BodyFrame frame(motion, t);
+      in_hull = frame.back(frame.origin() + down);
+    }
+    if (dot(hull->normals()[i], *in_hull) >= lying_side * norm(*in_hull)) most = faces[i].size();
+  }
+  return std::clamp(static_cast<double>(most) / static_cast<double>(calm_corners), 1.0, most_driven_by_corners);
 }
 
 }  // namespace kds::collision::turning_rest

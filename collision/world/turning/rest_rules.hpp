@@ -20,11 +20,15 @@ inline constexpr double calm_energy = 4;
 /// times n / calm_neighbours, where that factor is at least 1 and at most most_driven (8 cm/s on Earth).
 inline constexpr double calm_neighbours = 2;
 inline constexpr double most_driven = 4;
-/// A hull that lies on a face with more corners than this is driven by the flights of all of them: with n corners, of
-/// which n / calm_corners is at most most_driven, it is calm up to that speed times n / calm_corners, and held over the
-/// square of that times the distance. A coin of 16 corners that is dropped flat rocks at 2.1 cm/s for ever, one of 32
-/// at 4.9; those of up to 10 mostly get slower than 2 cm/s by themselves.
-inline constexpr double calm_corners = 8;
+/// A hull that lies on a face with more corners than this is driven by the flights of all of them: with n corners it is
+/// calm up to that speed times n / calm_corners, where that factor is at most most_driven_by_corners, and held over the
+/// square of it times the distance. A coin of 16 corners that is dropped flat rocks at 2.1 cm/s for ever, one of 32 at
+/// 4.9; those of up to 10 mostly get slower than 2 cm/s by themselves.
+inline constexpr std::size_t calm_corners = 8;
+inline constexpr double most_driven_by_corners = 16;
+/// It lies on a face whose normal has at least this cosine with the direction of its weight: a wheel that rolls on its
+/// rim does not.
+inline constexpr double lying_side = 0.75;
 
 /// Without friction nothing brakes what slides, or turns about the normal: two such bodies come to rest on each other
 /// only where that is slower than this part of the speed of a calm body (20 um/s on Earth), or would be if their

@@ -2,8 +2,6 @@
 
 #include "collision/motions.hpp"
 #include "collision/narrow_phase/turning/point_rates.hpp"
-#include "collision/shapes/polytope.hpp"
-#include "collision/shapes/shape_forms.hpp"
 #include "collision/vectors.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/body_frame.hpp"
@@ -18,20 +16,6 @@ namespace kds::collision {
 
 using Eigen::Vector3d;
 using namespace turning_rest;
-
-namespace {
-
-/// How much faster flights make a body if it lies on the face that has the most corners; balls may be null.
-double driven_by_corners(const PlacedShape* shape) {
-  const Polytope* const hull = shape ? polytope_of(shape->shape) : nullptr;
-  std::size_t most = 0;
-  if (hull) {
-    for (const auto& face : hull->structure().faces) most = std::max(most, face.size());
-  }
-  return std::clamp(static_cast<double>(most) / calm_corners, 1.0, most_driven);
-}
-
-}  // namespace
 
 template <class Motion>
 typename TurningRest<Motion>::Slot TurningRest<Motion>::find(BodySlot a, BodySlot b, int) const {
@@ -211,7 +195,8 @@ typename TurningRest<Motion>::Scale TurningRest<Motion>::scale(Key key) const {
     if (bodies_.fixed(slot)) continue;
     scale.acceleration = std::max(scale.acceleration, acceleration(slot));
     scale.size = std::min(scale.size, bodies_[slot].bounding_radius);
-    scale.driven = std::max(scale.driven, driven_by_corners(bodies_[slot].shape));
+    scale.driven = std::max(
+        scale.driven, driven_by_corners(bodies_[slot].shape, bodies_.motion(slot), half_weight(slot), clock_.now));
   }
   return scale;
 }
@@ -253,7 +238,8 @@ template <class Motion>
 bool TurningRest<Motion>::calm(BodySlot slot, double acceleration, const Carrier& carrier) const {
   const Motion& motion = bodies_.motion(slot);
   if (bodies_.fixed(slot)) return stays_below(slot, carrier);
-  const Scale scale{acceleration, bodies_[slot].bounding_radius, driven_by_corners(bodies_[slot].shape)};
+  const Scale scale{acceleration, bodies_[slot].bounding_radius,
+                    driven_by_corners(bodies_[slot].shape, motion, half_weight(slot), clock_.now)};
   const auto others = slot < of_.size() ? static_cast<double>(of_[slot].others.size()) : 0;
   const double driven = std::clamp(others / calm_neighbours, 1.0, most_driven);
   const Vector3d velocity = carrier.velocity_at(clock_.now);
