@@ -18,6 +18,7 @@ namespace kds::collision {
 
 /// Features of a polytope, and how far a point of it is below the planes of its faces.
 struct NearFeatures {
+  /// By its place in structure().edges.
   struct Edge {
     std::uint32_t number;
     double below;  ///< of its two faces the one that the point is less far below
@@ -28,7 +29,7 @@ struct NearFeatures {
 
 /// Those of two polytopes whose planes may be between the two. Of pairs of edges only those of which the sum of `below`
 /// is no more than `within`.
-struct NearPair {
+struct NearFeaturePair {
   std::array<NearFeatures, 2> of;
   double within;
 

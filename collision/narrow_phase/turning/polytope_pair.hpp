@@ -150,9 +150,9 @@ class PolytopePair {
   /// Of those that are near each other; none where doubles do not tell.
   std::optional<PointsInside> points_inside(const Frame& frame) const;
   /// All features where there are no such points.
-  NearPair near_pair(const std::optional<PointsInside>& inside, double within) const;
+  NearFeaturePair near_pair(const std::optional<PointsInside>& inside, double within) const;
   /// The least depth along one of these.
-  double depth_among(const Frame& frame, const NearPair& near) const;
+  double depth_among(const Frame& frame, const NearFeaturePair& near) const;
   /// As apart_until, but farther apart than `grown`.
   double farther_apart_until(double grown, double t, double horizon) const;
 
@@ -229,7 +229,7 @@ auto PolytopePair<Degree>::points_inside(const Frame& frame) const -> std::optio
 }
 
 template <int Degree>
-NearPair PolytopePair<Degree>::near_pair(const std::optional<PointsInside>& inside, double within) const {
+NearFeaturePair PolytopePair<Degree>::near_pair(const std::optional<PointsInside>& inside, double within) const {
   const HullStructure &a = *polytope_a_.structure, &b = *polytope_b_.structure;
   if (!inside) return {{all_features(a), all_features(b)}, never};
   return {{features_near(a, inside->of[0], within), features_near(b, inside->of[1], within)}, within};
@@ -245,7 +245,7 @@ auto PolytopePair<Degree>::near_ways(const Frame& frame, double stretch) const -
     within = (inside->distance + speed * stretch) * (1 + 0x1p-30);
     least = -error(frame) - fastest(frame, stretch) * stretch;
   }
-  const NearPair near = near_pair(inside, within);
+  const NearFeaturePair near = near_pair(inside, within);
   std::vector<WayWidth<Way>> found;
   const auto take = [&](Way way, double width) {
     if (!(width < least)) found.push_back({way, width});
@@ -375,7 +375,7 @@ double PolytopePair<Degree>::depth(double t) const {
 }
 
 template <int Degree>
-double PolytopePair<Degree>::depth_among(const Frame& frame, const NearPair& near) const {
+double PolytopePair<Degree>::depth_among(const Frame& frame, const NearFeaturePair& near) const {
   constexpr double least_sine = 0x1p-20;
   double least = never;
   for (const std::uint32_t f : near.of[0].faces) least = std::min(least, -face_width(frame, f));

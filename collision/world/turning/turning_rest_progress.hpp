@@ -67,7 +67,8 @@ struct Ignored {
 
   template <class Archive>
   void archive(Archive& archive) {
-    archive(since, velocity, angular_velocity);
+    archive(since);
+    image::vector(archive, velocity), image::vector(archive, angular_velocity);
   }
 };
 
@@ -79,10 +80,12 @@ struct Ignored {
 /// decides nothing any more is left out, so that two worlds in which the same will happen have the same bits.
 class TurningRestProgress {
  public:
+  /// With another body: where the two have touched.
   struct Link {
     BodySlot other = 0;  ///< by its number
     detail::LyingPair pair{};
   };
+  /// Of a body with links, or that is calm.
   struct State {
     std::vector<Link> links{};  ///< in the order of the others
     double since = never;       ///< s; since when it is calm
