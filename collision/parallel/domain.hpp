@@ -172,7 +172,7 @@ class Domain final : private BasicWorldListener<Motion> {
   void begin_to_follow(BodySlot slot, double t);
   void begin_islands();
   void note_islands();
-  void note_touched() requires(turns<Motion>);
+  void note_touched();
   void mark(std::span<const BodySlot> island, const DomainEvent::Cause& cause, double t);
   void find_islands(double t);
   bool leans(BodySlot slot) const;

@@ -37,17 +37,19 @@ void Domain<Motion>::note_islands() {
     shared_copies_.insert_or_assign(slot, copy);
   }
   for (const auto& island : islands.take_concerned()) mark(island, cause_at(t), t);
-  if constexpr (turns<Motion>) note_touched();
+  note_touched();
 }
 
 /// Of bodies that turn: what an event has changed of others than those that have met.
 template <class Motion>
-void Domain<Motion>::note_touched() requires(turns<Motion>) {
-  std::vector<BodySlot> touched = engine_.transfer().islands().take_touched();
-  std::sort(touched.begin(), touched.end());
-  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
-  for (const BodySlot slot : touched) {
-    if (!engine_.bodies().fixed(slot)) changed(slot, world_.now());
+void Domain<Motion>::note_touched() {
+  if constexpr (turns<Motion>) {
+    std::vector<BodySlot> touched = engine_.transfer().islands().take_touched();
+    std::sort(touched.begin(), touched.end());
+    touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
+    for (const BodySlot slot : touched) {
+      if (!engine_.bodies().fixed(slot)) changed(slot, world_.now());
+    }
   }
 }
 
