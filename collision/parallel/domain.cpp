@@ -361,6 +361,7 @@ void Domain<Motion>::piece(World&, BodyId id) {
     };
     if (!leaves(followed_[known.place].motion) && leaves(engine_.bodies().motion(slot))) report_.divisible = false;
   }
+  if constexpr (turns<Motion>) note_islands();  // It has left what it was about to lie on.
   changed(slot, t);
 }
 
