@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 namespace kds::collision::test_turning_domains {
 namespace {
@@ -138,10 +139,14 @@ TEST_CASE("Domains: piles of bodies that turn have the events of one world", "[p
 }
 
 TEST_CASE("Domains: a listener that changes piles of bodies that turn has the events of one world", "[parallel]") {
-  TurningPileMaker maker(1);
-  const auto scene = maker.scene();
   Seen seen;
-  const std::uint64_t asked = compare_changed_by(scene, maker.manner(8), 1, seen, tests::change_turning_pile);
+  std::uint64_t asked = 0;
+  // In the second a script takes a body away from one that it was about to lie on, and that is known elsewhere.
+  for (const auto& [seed, domains] : {std::pair<std::uint64_t, std::size_t>(1, 8), {2127, 5}}) {
+    TurningPileMaker maker(seed);
+    const auto scene = maker.scene();
+    asked += compare_changed_by(scene, maker.manner(domains), seed, seen, tests::change_turning_pile);
+  }
   INFO("changes " << asked << ", " << seen.text());
   CHECK(asked > 20);
   CHECK(seen.rests > 5);
