@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/response/inertia.hpp"
+#include "python/arrays.hpp"
 #include "python/py_shape.hpp"
 #include "python/py_world.hpp"
 
@@ -23,21 +24,12 @@
 
 namespace kds_python {
 
-namespace py = pybind11;
-
-// Arrays come from the Python files of the package, which have checked their shapes.
-using Doubles = py::array_t<double, py::array::c_style>;
 using Ids = py::array_t<std::uint64_t, py::array::c_style>;  // or other numbers of 64 bits
 using Masks = py::array_t<std::uint32_t, py::array::c_style>;
 
 inline Ids to_array(const std::vector<BodyId>& ids) { return Ids(static_cast<py::ssize_t>(ids.size()), ids.data()); }
 
 inline std::vector<BodyId> to_vector(const Ids& ids) { return {ids.data(), ids.data() + ids.size()}; }
-
-template <class Row>
-py::array_t<Row> to_array(const std::vector<Row>& rows) {
-  return py::array_t<Row>(static_cast<py::ssize_t>(rows.size()), rows.data());
-}
 
 inline std::vector<Motion> to_motions(const Doubles& rows) {
   std::vector<Motion> motions(static_cast<std::size_t>(rows.shape(0)));

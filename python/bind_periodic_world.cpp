@@ -21,12 +21,13 @@ Boundary boundary_named(const std::string& name) {
   throw std::invalid_argument("boundaries: must be 'periodic', 'walls' or 'open', not '" + name + "'");
 }
 
-std::unique_ptr<PyPeriodicWorld> new_world(int degree, bool gather, bool record, const Eigen::Vector3d& min,
-                                           const Eigen::Vector3d& max, const std::array<std::string, 3>& boundaries,
-                                           double shear_rate, double wall_restitution,
-                                           const std::array<double, 6>& wall_temperatures, std::uint64_t seed,
-                                           double elastic_within, const std::string& broad_phase, double start_time,
-                                           double window, std::size_t threads) {
+std::unique_ptr<PyPeriodicWorld> new_periodic_world(int degree, bool gather, bool record, const Eigen::Vector3d& min,
+                                                    const Eigen::Vector3d& max,
+                                                    const std::array<std::string, 3>& boundaries, double shear_rate,
+                                                    double wall_restitution,
+                                                    const std::array<double, 6>& wall_temperatures, std::uint64_t seed,
+                                                    double elastic_within, const std::string& broad_phase,
+                                                    double start_time, double window, std::size_t threads) {
   PeriodicOptions options;
   options.min = min;
   options.max = max;
@@ -66,7 +67,7 @@ Doubles ways_wrapped(PyPeriodicWorld& self, const Ids& ids) {
   return rows;
 }
 
-py::dict counters(PyPeriodicWorld& self) {
+py::dict periodic_counters(PyPeriodicWorld& self) {
   const PeriodicCounters c = self.world().counters();
   py::dict d;
   d["contacts"] = c.contacts;
@@ -81,14 +82,14 @@ py::dict counters(PyPeriodicWorld& self) {
 void bind_periodic_world(py::module_& module) {
   PYBIND11_NUMPY_DTYPE(PeriodicRow, event, offset, impulse);
   py::class_<PyPeriodicWorld> world = bind_held<PyPeriodicWorld>(module, "PeriodicWorld");
-  world.def(py::init(&new_world), py::kw_only(), py::arg("degree"), py::arg("gather"), py::arg("record"),
+  world.def(py::init(&new_periodic_world), py::kw_only(), py::arg("degree"), py::arg("gather"), py::arg("record"),
             py::arg("min"), py::arg("max"), py::arg("boundaries"), py::arg("shear_rate"), py::arg("wall_restitution"),
             py::arg("wall_temperatures"), py::arg("seed"), py::arg("elastic_within"), py::arg("broad_phase"),
             py::arg("start_time"), py::arg("window"), py::arg("threads"));
   world.def("bodies", [](PyPeriodicWorld& self) { return to_array(self.world().bodies()); });
   world.def("crossings", &crossings);
   world.def("ways_wrapped", &ways_wrapped);
-  world.def("counters", &counters);
+  world.def("counters", &periodic_counters);
 }
 
 }  // namespace kds_python

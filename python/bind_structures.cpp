@@ -3,6 +3,7 @@
 #include "examples/course/mesh_edges.hpp"
 #include "kds/framework/kinetic.hpp"
 #include "kds/simulator.hpp"
+#include "python/arrays.hpp"
 #include "python/bindings.hpp"
 #include "structures/convex_hull.hpp"
 #include "structures/delaunay.hpp"
@@ -25,8 +26,6 @@
 namespace kds_python {
 namespace {
 
-namespace py = pybind11;
-using Doubles = py::array_t<double, py::array::c_style>;
 using Path = kds::certificates::PlaneMotion<2>;
 
 /// What has changed: +1 something has come, -1 it has gone; of a hull a is b, the point.
@@ -42,11 +41,6 @@ struct SwapRow {
   std::uint32_t left;  ///< from now on
   std::uint32_t right;
 };
-
-template <class Row>
-py::array_t<Row> to_array(const std::vector<Row>& rows) {
-  return py::array_t<Row>(static_cast<py::ssize_t>(rows.size()), rows.data());
-}
 
 /// Throws unless the clock may go from now to t.
 void require_ahead(double now, double t) {

@@ -20,11 +20,11 @@ using namespace kds::collision;
 using kds::io::EventKind;
 
 template <int Degree>
-class Teller final : public PeriodicListener<Degree> {
+class PeriodicTeller final : public PeriodicListener<Degree> {
  public:
   using World = PeriodicWorld<Degree>;
 
-  explicit Teller(AnyPeriodicWorld::Listener listener) : listener_(std::move(listener)) {}
+  explicit PeriodicTeller(AnyPeriodicWorld::Listener listener) : listener_(std::move(listener)) {}
 
   void contact(World&, const PeriodicEvent& e) override { tell(EventKind::contact, e); }
   void overlap(World&, const PeriodicEvent& e) override { tell(EventKind::overlap, e); }
@@ -166,7 +166,7 @@ class PeriodicWorldOf final : public AnyPeriodicWorld {
   }
 
   Eigen::Vector3d min_;
-  Teller<Degree> teller_;
+  PeriodicTeller<Degree> teller_;
   Recording<kds::io::PeriodicRecorder<Degree>> recording_;
   PeriodicWorld<Degree> world_;
 };

@@ -49,7 +49,12 @@ set(KDS_WASM_COMPILE ${CMAKE_CXX_COMPILER_LAUNCHER} "${KDS_WASM_CXX}" --target=w
 
 # kds_wasm_object(SOURCE VARIABLE): compiles a file; the object's path is put into the variable.
 function(kds_wasm_object source variable)
-  file(RELATIVE_PATH name "${PROJECT_SOURCE_DIR}" "${source}")
+  cmake_path(IS_PREFIX PROJECT_BINARY_DIR "${source}" generated)
+  if(generated)
+    file(RELATIVE_PATH name "${PROJECT_BINARY_DIR}" "${source}")
+  else()
+    file(RELATIVE_PATH name "${PROJECT_SOURCE_DIR}" "${source}")
+  endif()
   string(REPLACE "/" "_" name "${name}")
   set(object "${PROJECT_BINARY_DIR}/examples/course/wasm/${name}.o")
   add_custom_command(OUTPUT "${object}"
@@ -60,14 +65,24 @@ endfunction()
 
 # What of the library those programs link; what one does not use is left out of it. An object of a source above is that
 # of one custom target, so that two programs do not compile it at the same time.
+set(of_library kds/large_vector kds/arithmetic/exact kds/roots/failure_time certificates/order
+  certificates/plane_certificates collision/broad_phase/tuning collision/broad_phase/unlisted_axes
+  collision/broad_phase/kinetic_sweep_and_prune_axes collision/broad_phase/kinetic_sweep_and_prune_queries
+  collision/broad_phase/kinetic_sweep_and_prune)
+list(TRANSFORM of_library PREPEND "${PROJECT_SOURCE_DIR}/")
+list(TRANSFORM of_library APPEND ".cpp")
+if(KDS_COMPILE_TOGETHER)
+  set(together "${PROJECT_BINARY_DIR}/examples/course/wasm/of_library.cpp")
+  list(JOIN of_library "\"\n#include \"" includes)
+  # Of the files that define the members of one class template the last one instantiates it.
+  file(CONFIGURE OUTPUT "${together}" CONTENT "#define KDS_PARTS_TOGETHER\n#include \"@includes@\"\n" @ONLY)
+  set(of_library "${together}")
+endif()
 set(objects "")
-foreach(source IN ITEMS kds/large_vector kds/arithmetic/exact kds/roots/failure_time certificates/order
-                        certificates/plane_certificates collision/broad_phase/kinetic_sweep_and_prune
-                        collision/broad_phase/kinetic_sweep_and_prune_axes
-                        collision/broad_phase/kinetic_sweep_and_prune_queries collision/broad_phase/tuning
-                        collision/broad_phase/unlisted_axes examples/course/page examples/course/browser/write
-                        examples/course/browser/exceptions)
-  kds_wasm_object("${PROJECT_SOURCE_DIR}/${source}.cpp" object)
+foreach(source IN ITEMS ${of_library} "${PROJECT_SOURCE_DIR}/examples/course/page.cpp"
+                        "${PROJECT_SOURCE_DIR}/examples/course/browser/write.cpp"
+                        "${PROJECT_SOURCE_DIR}/examples/course/browser/exceptions.cpp")
+  kds_wasm_object("${source}" object)
   list(APPEND objects "${object}")
 endforeach()
 set(KDS_WASM_OBJECTS "${objects}" CACHE INTERNAL "what all programs in pages link")
