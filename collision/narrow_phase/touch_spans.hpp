@@ -23,6 +23,7 @@ struct TouchSpan {
 /// `first_contact(from)`.
 template <class Course>
 TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
+  constexpr double longest_stride = 0x1p-10;
   TouchSpan touch;
   bool open = false;
   const auto is_told = [&course](double at) {
@@ -64,13 +65,14 @@ TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
       // Where the doubles of the clock are far apart a contact is told some of them before the two touch, and a
       // separation before they have parted. What is told or touches at the end of a contact goes on with it: there is
       // no gap that a double sees. So that this ends where surfaces stay at the edge of the tolerance, where roundings
-      // decide, each such stretch is at least twice as long as the one before.
+      // decide, each such stretch is at least twice as long as the one before, up to 2^-10 of the piece, as in
+      // SurfaceTouching::parts_at().
       double stride = 0;
       for (;;) {
         const double parts = touching.parts_at(now);
         touch.end = parts == never ? never : std::max({parts, next_up(now), now + stride});
         if (!(touch.end < w1) || !(touching.touches(touch.end) || is_told(touch.end))) break;
-        stride = std::max(2 * stride, next_up(touch.end) - touch.end);
+        stride = std::min(std::max(2 * stride, next_up(touch.end) - touch.end), longest_stride * (w1 - w0));
         now = touch.end;
       }
       if (!(touch.end < w1)) break;  // the next piece tells whether it goes on there
