@@ -23,8 +23,13 @@ struct TouchSpan {
 /// `first_contact(from)`.
 template <class Course>
 TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
+  constexpr double longest_stride = 0x1p-10;
   TouchSpan touch;
   bool open = false;
+  const auto is_told = [&course](double at) {
+    const auto contact = course.first_contact(at);
+    return contact && !(contact->contact.time > at);
+  };
   for (double begin = course.first_begin(t); begin <= horizon;) {
     const auto [w0, w1] = course.piece(begin);
     if (!(begin < w1) || course.over(w0)) break;
@@ -40,7 +45,7 @@ TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
     const auto touching = course.touching(w0, w1);
     double now = w0;
     bool touches = touching.touches(w0);
-    if (open && !touches) {
+    if (open && !touches && !is_told(w0)) {
       touch.end = w0;
       if (touch.end > t) return touch;
       open = false;
@@ -57,13 +62,23 @@ TouchSpan touch_after(Course& course, double t, double horizon, bool with_end) {
         if (now > horizon) return {};
       }
       if (touch.begin >= t && !with_end) return touch;
-      const double parts = touching.parts_at(now);
-      if (parts == never) break;
-      touch.end = std::max(parts, next_up(now));
+      // Where the doubles of the clock are far apart a contact is told some of them before the two touch, and a
+      // separation before they have parted. What is told or touches at the end of a contact goes on with it: there is
+      // no gap that a double sees. So that this ends where surfaces stay at the edge of the tolerance, where roundings
+      // decide, each such stretch is at least twice as long as the one before, up to 2^-10 of the piece, as in
+      // SurfaceTouching::parts_at().
+      double stride = 0;
+      for (;;) {
+        const double parts = touching.parts_at(now);
+        touch.end = parts == never ? never : std::max({parts, next_up(now), now + stride});
+        if (!(touch.end < w1) || !(touching.touches(touch.end) || is_told(touch.end))) break;
+        stride = std::min(std::max(2 * stride, next_up(touch.end) - touch.end), longest_stride * (w1 - w0));
+        now = touch.end;
+      }
+      if (!(touch.end < w1)) break;  // the next piece tells whether it goes on there
       if (touch.end > t) return touch;
       now = touch.end;
       open = touches = false;
-      if (!(now < w1)) break;
     }
   }
   return open ? TouchSpan{touch.begin, never} : TouchSpan{};

@@ -113,6 +113,58 @@ TEST_CASE("a keyframe in the far future makes contacts no less exact", "[deformi
   }
 }
 
+TEST_CASE("a late clock parts no surfaces that bend into each other", "[deforming][world]") {
+  const ConvexHull hull = convex_hull({{0.5, 0, 0}, {-0.25, 0.5, 0}, {-0.25, -0.5, 0}, {0, 0, 0.5}, {0, 0, -0.25}});
+  const std::vector<Shape> shapes{
+      Sphere{0.25}, Box{Vector3d(0.2, 0.3, 0.1)},       Capsule{0.1, 0.3}, MeshShape{samples::torus(6, 4)},
+      hull,         HalfSpace{-Vector3d::UnitZ(), -0.9}};
+  // A sheet that rises, and meets another body or, if there is none, two triangles of which one goes through the other.
+  const auto run = [](const Shape* shape, double start) {
+    EventLog<1> log;
+    World<1> world({.start_time = start, .response = Response::none}, &log);
+    samples::Sheet sheet(4);
+    if (!shape) {
+      sheet.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {0.2, 0.2, 1}, {1.2, 0.3, 1}, {0.3, 1.1, 1.2}};
+      sheet.triangles = {{0, 1, 2}, {3, 4, 5}};
+    }
+    auto moved = sheet.positions;
+    for (std::size_t v = 0; v < moved.size(); ++v) moved[v][2] += shape ? 1.0 : v < 3 ? 0.0 : -2.0;
+    if (shape) moved[12][2] += 0.5;
+    const std::vector<MeshScript::Keyframe> keyframes{{start, sheet.positions}, {start + 2, moved}};
+    const Path<1> still = Path<1>::line(Vector3d::Zero(), Vector3d::Zero(), start);
+    world.add_body({.shape = BendingMesh{std::make_shared<const MeshScript>(keyframes, sheet.triangles)},
+                    .motion = {still},
+                    .self_contacts = !shape});
+    if (shape && std::holds_alternative<HalfSpace>(*shape)) {
+      const Path<1> away = Path<1>::line(Vector3d::Zero(), Vector3d(0, 0, 0.125), start);
+      world.add_body({.shape = *shape, .motion = {away}, .fixed = true});
+    } else if (shape) {
+      world.add_body({.shape = *shape,
+                      .orientation = Eigen::Quaterniond(0.8, 0.6, 0, 0),
+                      .motion = {Path<1>::line(Vector3d(0.1, 0.3, 2), Vector3d(0.1, 0.2, -0.9), start)}});
+    }
+    world.advance_to(start + 8);
+    return log.events;
+  };
+  for (std::size_t k = 0; k <= shapes.size(); ++k) {
+    const Shape* const shape = k < shapes.size() ? &shapes[k] : nullptr;
+    const auto expected = run(shape, 0);
+    CAPTURE(k);
+    REQUIRE(expected.size() == 2);
+    for (const double start : {0x1p26, 0x1p28, 0x1p30, 0x1p34}) {
+      const auto events = run(shape, start);
+      CAPTURE(start);
+      REQUIRE(events.size() == 2);
+      const double spacing = next_up(start) - start;
+      for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(events[i].kind == expected[i].kind);
+        CHECK(events[i].time() - start == Approx(expected[i].time()).epsilon(0).margin(1e-7 + 8 * spacing));
+      }
+      CHECK(events[0].time() - start <= expected[0].time() + spacing);
+    }
+  }
+}
+
 TEST_CASE("a ball is in contact with a sheet that bends while it is near, and not else", "[deforming][world]") {
   const std::uint64_t seed = GENERATE(1, 2, 3);
   CAPTURE(seed);
