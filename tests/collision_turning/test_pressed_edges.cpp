@@ -1,4 +1,6 @@
 // Edges that slide on each other while their bodies turn are pressed together, or lifted off, by how they turn.
+#include "collision/shapes/convex_hull.hpp"
+#include "collision/shapes/mesh.hpp"
 #include "collision/world.hpp"
 #include "collision/world/turning/pressing.hpp"
 #include "tests/support/random_numbers.hpp"
@@ -10,7 +12,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <variant>
+#include <vector>
 
 namespace test_pressed_edges {
 namespace {
@@ -97,6 +101,18 @@ TEST_CASE("the gap of a side and an end opens with the acceleration that is calc
   }
 }
 
+TEST_CASE("the gap of two ends opens with the acceleration that is calculated", "[turning]") {
+  Random random(7);
+  for (int trial = 0; trial < 200; ++trial) {
+    CAPTURE(trial);
+    const Vector3d n = random_vector(random).normalized(), speed = random_vector(random);
+    const double radii = random.between(0.25, 1), h = 1e-4;
+    const auto distance = [&](double t) { return (radii * n + t * speed).norm(); };
+    const double measured = (distance(h) - 2 * distance(0) + distance(-h)) / (h * h);
+    CHECK(opens_at_end(speed, n, radii) == Approx(measured).epsilon(1e-3).margin(1e-3));
+  }
+}
+
 TEST_CASE("edges of boxes, hulls, meshes and capsules are where their features say", "[turning]") {
   const Shape box = Box{Vector3d(1, 2, 3)};
   for (std::uint32_t d = 0; d < 3; ++d) {
@@ -143,6 +159,45 @@ TEST_CASE("the end of a capsule that spins is pressed to a plane by what its cen
     world.add_body({.shape = Capsule{radius, half_length}, .motion = {motion}, .inertia = 0.02, .restitution = 0});
     while (world.now() < 0.05 && counter.contacts < 1000) world.step(0.05);
     CHECK(counter.contacts == 50);  // flights of a millisecond
+  }
+}
+
+TEST_CASE("the end of a capsule that spins is pressed to a corner, or to what is round, by what its centre does",
+          "[turning]") {
+  // As above, but the end does not move along the wall, of which there is the point at the origin alone.
+  constexpr double half_length = 0.3, radius = 0.1, rate = 10;
+  const Vector3d end = half_length * Vector3d(-std::cos(0.06), std::sin(0.06), 0), turns(-rate, rate / 10, 0);
+  const Vector3d tip(0, 0, 0);
+  const auto pyramid = [&] {
+    return std::vector<Vector3d>{tip, {-0.5, 1, -0.5}, {0.5, 1, -0.5}, {0.5, 1, 0.5}, {-0.5, 1, 0.5}};
+  };
+  const Quaterniond upright = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), Vector3d::UnitY());
+  const Quaterniond on_corner = Quaterniond::FromTwoVectors(Vector3d(1, 1, 1), -Vector3d::UnitY());
+  struct Point {
+    Shape shape;
+    double below;  ///< how far from its centre the point is
+    Quaterniond orientation;
+  };
+  const Mesh mesh(pyramid(), {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 3, 2}, {1, 4, 3}});
+  for (const Point& point : {Point{Box{Vector3d::Constant(0.5)}, std::sqrt(0.75), on_corner},
+                             Point{convex_hull(pyramid()), 0, Quaterniond::Identity()},
+                             Point{MeshShape{std::make_shared<const Mesh>(mesh)}, 0, Quaterniond::Identity()},
+                             Point{Capsule{0.5, 1}, 1.5, upright}, Point{Sphere{0.5}, 0.5, Quaterniond::Identity()}}) {
+    CAPTURE(point.shape.index());
+    Counter counter;
+    Turning world({.response = Response::elastic}, &counter);
+    RigidMotion<1> still{{{Vector3d(0, point.below, 0)}}};
+    still.orientation = point.orientation;
+    world.add_body({.shape = point.shape, .motion = {still}, .fixed = true});
+    Vector3d velocity = -turns.cross(end);
+    velocity[1] += 0.001;
+    RigidMotion<1> motion{{{Vector3d(0, -radius - 1e-6, 0) - end, velocity}}};
+    motion.orientation = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), end);
+    motion.angular_velocity = turns;
+    world.add_body({.shape = Capsule{radius, half_length}, .motion = {motion}, .inertia = 0.02, .restitution = 0});
+    while (world.now() < 0.05 && counter.contacts < 1000) world.step(0.05);
+    CHECK(counter.contacts >= 10);
+    CHECK(counter.contacts <= 51);  // flights of a millisecond, or longer ones
   }
 }
 

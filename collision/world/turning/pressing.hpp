@@ -57,6 +57,13 @@ inline double opens_at_side(const Eigen::Vector3d& along, const Eigen::Vector3d&
   return (squared_norm(velocity) - slides * slides - closes * closes) / radii;
 }
 
+/// The same of two ends, of capsules or balls, or of one and a corner: between their centres the normal turns with the
+/// way alone, of which v is the velocity, so that f'' = n . x'' + (v . v - (n . v)^2) / f.
+inline double opens_at_end(const Eigen::Vector3d& velocity, const Eigen::Vector3d& normal, double radii) {
+  const double closes = dot(normal, velocity);
+  return (squared_norm(velocity) - closes * closes) / radii;
+}
+
 /// The contact of two edges that cross, each turning with its body.
 ///
 /// Let x_a and x_b be points of the two, n the unit normal of both, and R the sum of the radii. The gap is f = n . (x_b

@@ -116,17 +116,19 @@ double TurningBounces<Motion>::pressed(BodySlot a, const Motion& motion_a, BodyS
       return Vector3d(axes.col(0) * x[0] + axes.col(1) * x[1] + axes.col(2) * x[2]);
     };
     auto edge_a = edge_of(a, contact.feature_a), edge_b = edge_of(b, contact.feature_b);
-    if (edge_a.has_value() != edge_b.has_value()) {
-      const auto end = edge_a ? end_of(b, contact.feature_b) : end_of(a, contact.feature_a);
-      const ContactEdge& edge = edge_a ? *edge_a : *edge_b;
-      const double radii = edge.radius + end.value_or(0);
-      if (end && radii > 0) {
-        const Vector3d way_a = (edge_a ? edge.radius : *end) * n, way_b = (edge_a ? *end : edge.radius) * n;
+    if (!edge_a || !edge_b) {
+      const auto end_a = edge_a ? std::optional(edge_a->radius) : end_of(a, contact.feature_a);
+      const auto end_b = edge_b ? std::optional(edge_b->radius) : end_of(b, contact.feature_b);
+      const double radii = end_a.value_or(0) + end_b.value_or(0);
+      if (end_a && end_b && radii > 0) {
+        const Vector3d way_a = *end_a * n, way_b = *end_b * n;  // from the one centre to the contact and on
         acceleration = rates.acceleration(contact.point) + cross(turns_a, cross(turns_a, way_a)) +
                        cross(turns_b, cross(turns_b, way_b));
         velocity = rates.velocity(contact.point) + cross(turns_a, way_a) + cross(turns_b, way_b);
         const Motion& of_edge = edge_a ? motion_a : motion_b;
-        rounded = -opens_at_side(in_world(of_edge, edge.along), of_edge.angular_velocity, velocity, n, radii);
+        const auto& edge = edge_a ? edge_a : edge_b;
+        rounded = edge ? -opens_at_side(in_world(of_edge, edge->along), of_edge.angular_velocity, velocity, n, radii)
+                       : -opens_at_end(velocity, n, radii);
       }
     }
     if (edge_a && edge_b) {
