@@ -172,9 +172,10 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
   double pressed = this->pressed(a, motion_a, b, motion_b, contact);
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
-  for (const Motion* motion : {&motion_a, &motion_b}) {
-    pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
-  }
+  const auto along_normal = [&](const Motion& motion) { return dot(n, motion.path.acceleration(contact.time)); };
+  const double of_a_alone = along_normal(motion_a), of_b_alone = along_normal(motion_b);
+  const double by_weight = std::max({of_a_alone - of_b_alone, std::abs(of_a_alone), std::abs(of_b_alone)});
+  pressed = std::max({pressed, std::abs(of_a_alone), std::abs(of_b_alone)});
   result.speed = approach;
   result.least = 0.5 * options_.shortest_flight * std::max(pressed, 0.0);
   // Where the contacts of one instant are not resolved together (collapse.hpp), after too many nothing is lost any
@@ -200,18 +201,33 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
   };
   const ContactArms arms{n, arm(a, motion_a), arm(b, motion_b)};
   const double rolling = often ? 0 : std::min(bodies_[a].rolling_friction, bodies_[b].rolling_friction);
+  const auto closing = [&] {
+    return -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
+                       (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
+  };
   Vector3d couple = Vector3d::Zero();
   if (rolling > 0) {
     const double change = approach + leaves_with(approach);
     couple = brake_turning(velocity_a, velocity_b, of_a, of_b, arms, rolling * push_for(change, of_a, of_b, arms));
-    approach = -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
-                           (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
+    approach = closing();
+  }
+  // What bodies turn by presses them together, but is no force: so the energy of a flight that it makes longer is taken
+  // from how they turn.
+  double speed = leaves_with(approach);
+  if (!bending && speed > rebound(approach, by_weight, restitution)) {
+    const double heaviness = push_for(1, of_a, of_b, arms), of_weight = rebound(approach, by_weight, restitution);
+    const TurningBrake brake =
+        spend_turning(velocity_a, velocity_b, of_a, of_b, 0.5 * heaviness * (speed * speed - of_weight * of_weight));
+    couple += brake.couple;
+    approach = closing();
+    const double least = rebound(approach, by_weight, restitution);
+    speed = std::min(std::max(speed, least), std::sqrt(least * least + 2 * brake.spent / heaviness));
   }
   if (approach > 0) {
-    surfaces.restitution = leaves_with(approach) / approach;
+    surfaces.restitution = speed / approach;
     result.impulse = collide(velocity_a, velocity_b, of_a, of_b, arms, surfaces).impulse;
   } else {
-    const double change = std::max(leaves_with(approach) + approach, 0.0);
+    const double change = std::max(speed + approach, 0.0);
     result.impulse = push_for(change, of_a, of_b, arms) * n;
     give_impulse(velocity_a, of_a, arms.a, -result.impulse), give_impulse(velocity_b, of_b, arms.b, result.impulse);
   }
