@@ -201,4 +201,42 @@ TEST_CASE("the end of a capsule that spins is pressed to a corner, or to what is
   }
 }
 
+TEST_CASE("what turning adds to a rebound is taken from how bodies turn", "[turning]") {
+  // Two capsules that slide on each other, nearly parallel, while they turn against each other: so they are pressed
+  // together a hundred times as much as by a weight.
+  Counter counter;
+  Turning world({.response = Response::elastic}, &counter);
+  const auto add_capsule = [&](const Vector3d& place, const Vector3d& velocity, const Quaterniond& orientation,
+                               const Vector3d& turns) {
+    RigidMotion<1> motion{{{place, velocity}}};
+    motion.orientation = orientation;
+    motion.angular_velocity = turns;
+    return world.add_body({.shape = Capsule{0.15, 0.35}, .motion = {motion}, .restitution = 0});
+  };
+  const BodyId a = add_capsule({0.050447400901378898, 0.68956650684836496, 3.4196154041741109},
+                               {-0.059458107073023243, 0.52744626654414239, -0.20642217468874588},
+                               {-0.20929540741794461, -0.19312135428451405, 0.41859319439390036, -0.86236843202901514},
+                               {1.5832052442217122, 1.1675710133649821, -1.2473812756546958});
+  const BodyId b = add_capsule({-0.067881880679963591, 0.48696160310015363, 3.8570552505341431},
+                               {-0.35478105488953593, -0.2171946021331988, -0.49610303871727252},
+                               {0.35586938616321651, -0.57252727987989915, -0.67099772302988114, -0.30875807598712934},
+                               {-1.2800265322191779, 0.15617501158555691, -4.7085136590421941});
+  const auto energy = [&] {
+    double sum = 0;
+    for (const BodyId id : {a, b}) {
+      const auto turning = world.free_turning(id);
+      sum += world.motion(id).path.velocity(world.now()).squaredNorm() / 2 +
+             turning.angular_momentum.dot(turning.angular_velocity) / 2;
+    }
+    return sum;
+  };
+  const double before = energy();
+  while (world.now() < 0.004 && counter.contacts < 100) {
+    world.step(0.004);
+    CHECK(energy() <= before * (1 + 1e-9));
+  }
+  CHECK(counter.contacts > 0);
+  CHECK(counter.contacts < 100);
+}
+
 }  // namespace test_pressed_edges

@@ -211,17 +211,18 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
     couple = brake_turning(velocity_a, velocity_b, of_a, of_b, arms, rolling * push_for(change, of_a, of_b, arms));
     approach = closing();
   }
-  // What bodies turn by presses them together, but is no force: so the energy of a flight that it makes longer is taken
-  // from how they turn.
+  // That bodies turn presses them together, but is no force: where it makes them part faster than they approach, the
+  // energy of that is taken from how they turn.
   double speed = leaves_with(approach);
-  if (!bending && speed > rebound(approach, by_weight, restitution)) {
-    const double heaviness = push_for(1, of_a, of_b, arms), of_weight = rebound(approach, by_weight, restitution);
+  const double paid = std::max(rebound(approach, by_weight, restitution), approach);
+  if (!bending && speed > paid) {
+    const double mass = push_for(1, of_a, of_b, arms);
     const TurningBrake brake =
-        spend_turning(velocity_a, velocity_b, of_a, of_b, 0.5 * heaviness * (speed * speed - of_weight * of_weight));
+        spend_turning(velocity_a, velocity_b, of_a, of_b, 0.5 * mass * (speed * speed - paid * paid));
     couple += brake.couple;
     approach = closing();
-    const double least = rebound(approach, by_weight, restitution);
-    speed = std::min(std::max(speed, least), std::sqrt(least * least + 2 * brake.spent / heaviness));
+    const double affordable = std::sqrt(approach * approach + 2 * brake.spent / mass);
+    speed = std::min(speed, std::max(rebound(approach, by_weight, restitution), affordable));
   }
   if (approach > 0) {
     surfaces.restitution = speed / approach;
