@@ -6,6 +6,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -238,6 +239,24 @@ TEST_CASE("a box that drops between two walls that lean apart comes to lie there
     scene.add(Box{Vector3d(0.5, 0.25, 0.375)}, motion({0.01, 0, 2}, none, {0, 0, -9.81}, {0.1, 0.2, 0.3}), 1, e, 0.5);
     run(scene, 2, 30000, 1e-3);
     CHECK(scene.log.passed == 0);
+  }
+}
+
+TEST_CASE("what becomes a thousand times as heavy presses nothing through the floor", "[collapse]") {
+  Scene scene;
+  const Vector3d weight(0, 0, -10);
+  scene.add(HalfSpace{Vector3d::UnitZ(), 0}, motion(none, none, none, none), 0, 1, 1);
+  for (const int i : {0, 1, 2}) {
+    const Vector3d place(0.01 * i, 0, 0.5 + 1.0001 * i);
+    scene.add(Box{Vector3d::Constant(0.5)}, motion(place, none, weight, none), 1, 0.3, 0.5);
+  }
+  scene.world->advance_to(2);
+  CHECK(scene.world->resting(0, 1));
+  scene.world->set_mass(3, 1000);
+  scene.world->advance_to(2.01);
+  CHECK(scene.log.passed == 0);
+  for (const BodyId id : {1, 2, 3}) {
+    CHECK(std::abs(scene.world->motion(id).path.position(2.01)[2] - (static_cast<double>(id) - 0.5)) < 1e-3);
   }
 }
 

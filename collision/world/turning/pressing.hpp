@@ -2,6 +2,7 @@
 #pragma once
 
 #include "collision/narrow_phase/contact.hpp"
+#include "collision/response/turning_impulse.hpp"
 #include "collision/shapes/mesh.hpp"
 #include "collision/shapes/shape.hpp"
 #include "collision/shapes/shape_forms.hpp"
@@ -9,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <optional>
 #include <variant>
 
@@ -57,6 +59,13 @@ inline double opens_at_side(const Eigen::Vector3d& along, const Eigen::Vector3d&
   return (squared_norm(velocity) - slides * slides - closes * closes) / radii;
 }
 
+/// The same of two ends, of capsules or balls, or of one and a corner: between their centres the normal turns with the
+/// way alone, of which v is the velocity, so that f'' = n . x'' + (v . v - (n . v)^2) / f.
+inline double opens_at_end(const Eigen::Vector3d& velocity, const Eigen::Vector3d& normal, double radii) {
+  const double closes = dot(normal, velocity);
+  return (squared_norm(velocity) - closes * closes) / radii;
+}
+
 /// The contact of two edges that cross, each turning with its body.
 ///
 /// Let x_a and x_b be points of the two, n the unit normal of both, and R the sum of the radii. The gap is f = n . (x_b
@@ -80,5 +89,29 @@ struct CrossingEdges {
     return CrossingEdges{dot(across, normal) < 0 ? Eigen::Vector3d(-turned) : turned, a.radius, b.radius, sine};
   }
 };
+
+/// What brakes how two bodies turn against each other: a couple on the second, its opposite on the first, and the
+/// energy that they lose.
+struct TurningBrake {
+  Eigen::Vector3d couple = Eigen::Vector3d::Zero();
+  double spent = 0;
+};
+
+/// Takes an energy from how two bodies turn against each other, or all that there is of it.
+inline TurningBrake spend_turning(RigidVelocity& a, RigidVelocity& b, const Mobility& of_a, const Mobility& of_b,
+                                  double energy) {
+  const Eigen::Vector3d relative = b.angular_velocity - a.angular_velocity;
+  const double rate = norm(relative);
+  if (!(rate > 0 && energy > 0)) return {};
+  const Eigen::Vector3d axis = relative / rate;
+  const Eigen::Vector3d turns_a = of_a.turned_by(axis), turns_b = of_b.turned_by(axis);
+  const double turns = dot(axis, turns_a + turns_b);
+  if (!(turns > 0)) return {};
+  // A couple C takes C rate - C^2 turns / 2, at most where it stops them.
+  const double left = rate * rate - 2 * turns * energy;
+  const double couple = left > 0 ? 2 * energy / (rate + std::sqrt(left)) : rate / turns;
+  a.angular_velocity += couple * turns_a, b.angular_velocity -= couple * turns_b;
+  return {-couple * axis, left > 0 ? energy : rate * rate / (2 * turns)};
+}
 
 }  // namespace kds::collision

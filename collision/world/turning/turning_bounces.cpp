@@ -116,17 +116,19 @@ double TurningBounces<Motion>::pressed(BodySlot a, const Motion& motion_a, BodyS
       return Vector3d(axes.col(0) * x[0] + axes.col(1) * x[1] + axes.col(2) * x[2]);
     };
     auto edge_a = edge_of(a, contact.feature_a), edge_b = edge_of(b, contact.feature_b);
-    if (edge_a.has_value() != edge_b.has_value()) {
-      const auto end = edge_a ? end_of(b, contact.feature_b) : end_of(a, contact.feature_a);
-      const ContactEdge& edge = edge_a ? *edge_a : *edge_b;
-      const double radii = edge.radius + end.value_or(0);
-      if (end && radii > 0) {
-        const Vector3d way_a = (edge_a ? edge.radius : *end) * n, way_b = (edge_a ? *end : edge.radius) * n;
+    if (!edge_a || !edge_b) {
+      const auto end_a = edge_a ? std::optional(edge_a->radius) : end_of(a, contact.feature_a);
+      const auto end_b = edge_b ? std::optional(edge_b->radius) : end_of(b, contact.feature_b);
+      const double radii = end_a.value_or(0) + end_b.value_or(0);
+      if (end_a && end_b && radii > 0) {
+        const Vector3d way_a = *end_a * n, way_b = *end_b * n;  // from the one centre to the contact and on
         acceleration = rates.acceleration(contact.point) + cross(turns_a, cross(turns_a, way_a)) +
                        cross(turns_b, cross(turns_b, way_b));
         velocity = rates.velocity(contact.point) + cross(turns_a, way_a) + cross(turns_b, way_b);
         const Motion& of_edge = edge_a ? motion_a : motion_b;
-        rounded = -opens_at_side(in_world(of_edge, edge.along), of_edge.angular_velocity, velocity, n, radii);
+        const auto& edge = edge_a ? edge_a : edge_b;
+        rounded = edge ? -opens_at_side(in_world(of_edge, edge->along), of_edge.angular_velocity, velocity, n, radii)
+                       : -opens_at_end(velocity, n, radii);
       }
     }
     if (edge_a && edge_b) {
@@ -170,9 +172,10 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
   double pressed = this->pressed(a, motion_a, b, motion_b, contact);
   // Two bodies that fall together are not pressed together yet, but are when one of them lies on something: so what
   // each of them would press if the other were at rest counts too.
-  for (const Motion* motion : {&motion_a, &motion_b}) {
-    pressed = std::max(pressed, std::abs(dot(n, motion->path.acceleration(contact.time))));
-  }
+  const auto along_normal = [&](const Motion& motion) { return dot(n, motion.path.acceleration(contact.time)); };
+  const double of_a_alone = along_normal(motion_a), of_b_alone = along_normal(motion_b);
+  const double by_weight = std::max({of_a_alone - of_b_alone, std::abs(of_a_alone), std::abs(of_b_alone)});
+  pressed = std::max({pressed, std::abs(of_a_alone), std::abs(of_b_alone)});
   result.speed = approach;
   result.least = 0.5 * options_.shortest_flight * std::max(pressed, 0.0);
   // Where the contacts of one instant are not resolved together (collapse.hpp), after too many nothing is lost any
@@ -198,18 +201,34 @@ TurningImpact<Motion> TurningBounces<Motion>::impact(BodySlot a, BodySlot b, con
   };
   const ContactArms arms{n, arm(a, motion_a), arm(b, motion_b)};
   const double rolling = often ? 0 : std::min(bodies_[a].rolling_friction, bodies_[b].rolling_friction);
+  const auto closing = [&] {
+    return -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
+                       (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
+  };
   Vector3d couple = Vector3d::Zero();
   if (rolling > 0) {
     const double change = approach + leaves_with(approach);
     couple = brake_turning(velocity_a, velocity_b, of_a, of_b, arms, rolling * push_for(change, of_a, of_b, arms));
-    approach = -dot(n, (velocity_b.velocity + cross(velocity_b.angular_velocity, arms.b)) -
-                           (velocity_a.velocity + cross(velocity_a.angular_velocity, arms.a)));
+    approach = closing();
+  }
+  // That bodies turn presses them together, but is no force: where it makes them part faster than they approach, the
+  // energy of that is taken from how they turn.
+  double speed = leaves_with(approach);
+  const double paid = std::max(rebound(approach, by_weight, restitution), approach);
+  if (!bending && speed > paid) {
+    const double mass = push_for(1, of_a, of_b, arms);
+    const TurningBrake brake =
+        spend_turning(velocity_a, velocity_b, of_a, of_b, 0.5 * mass * (speed * speed - paid * paid));
+    couple += brake.couple;
+    approach = closing();
+    const double affordable = std::sqrt(approach * approach + 2 * brake.spent / mass);
+    speed = std::min(speed, std::max(rebound(approach, by_weight, restitution), affordable));
   }
   if (approach > 0) {
-    surfaces.restitution = leaves_with(approach) / approach;
+    surfaces.restitution = speed / approach;
     result.impulse = collide(velocity_a, velocity_b, of_a, of_b, arms, surfaces).impulse;
   } else {
-    const double change = std::max(leaves_with(approach) + approach, 0.0);
+    const double change = std::max(speed + approach, 0.0);
     result.impulse = push_for(change, of_a, of_b, arms) * n;
     give_impulse(velocity_a, of_a, arms.a, -result.impulse), give_impulse(velocity_b, of_b, arms.b, result.impulse);
   }

@@ -45,6 +45,40 @@ TEST_CASE("a body between two that close in goes on with both", "[joint_impulse]
   CHECK(bodies[1].velocity.angular_velocity.isZero(0));
 }
 
+TEST_CASE("light bodies between a floor and a heavy body are parted from both", "[joint_impulse]") {
+  const Vector3d z = Vector3d::UnitZ();
+  constexpr double least = 0x1p-8;
+  for (const double mass : {1e2, 1e3, 1e6}) {
+    CAPTURE(mass);
+    std::vector<JointBody> bodies{{.mobility = Mobility::fixed()}};
+    std::vector<JointPlace> places;
+    double momentum = 0;
+    for (std::uint32_t i = 1; i <= 5; ++i) {
+      const double own = i == 5 ? mass : 1, speed = i == 5 ? 4 * least : 0;
+      bodies.push_back(moving(own, own, -speed * z));
+      momentum -= own * speed;
+      for (const double x : {-0.5, 0.5}) {
+        places.push_back({.a = i - 1,
+                          .b = i,
+                          .normal = z,
+                          .arm_a = Vector3d(x, 0, 0.5),
+                          .arm_b = Vector3d(x, 0, -0.5),
+                          .least = least});
+      }
+    }
+    REQUIRE(part_jointly(bodies, places));
+    double pushed = 0;
+    for (const JointPlace& at : places) {
+      CHECK(std::abs(parting(bodies, at) - least) <= least / 8);
+      CHECK(at.push >= 0);
+      if (at.a == 0) pushed += at.push;
+    }
+    double after = 0;
+    for (std::uint32_t i = 1; i <= 5; ++i) after += (i == 5 ? mass : 1) * bodies[i].velocity.velocity[2];
+    CHECK(std::abs(after - momentum - pushed) < 1e-9 * mass * least);
+  }
+}
+
 TEST_CASE("what two fixed bodies close in on cannot be parted from both", "[joint_impulse]") {
   const Vector3d x = Vector3d::UnitX();
   std::vector<JointBody> bodies{{.mobility = Mobility::fixed(), .velocity = {x, Vector3d::Zero()}},
