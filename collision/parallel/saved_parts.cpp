@@ -2,6 +2,7 @@
 #include "collision/motions.hpp"
 #include "collision/parallel/domains.hpp"
 #include "collision/parallel/saved_bodies.hpp"
+#include "collision/world/bodies_image.hpp"
 #include "collision/world/edits/checked_pieces.hpp"
 
 #include <algorithm>
@@ -126,9 +127,10 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
   if (found != expected || !carried) {
     store_.put_part(std::move(before));
     if (failure) std::rethrow_exception(failure);
-    throw std::runtime_error(!loaded             ? "snapshot: another process has not loaded its part"
-                             : found != expected ? "snapshot: the parts have not the bodies of the scene"
-                                                 : "snapshot: a body rests on one that is not there");
+    throw std::runtime_error(!loaded ? "snapshot: another process has not loaded its part"
+                             : found != expected
+                                 ? "snapshot: the parts have not the bodies of the scene"
+                                 : "snapshot: a body rests on one that is not there, or does not rest on it");
   }
   leave();
   meshes_ = rest.bodies.meshes;
@@ -139,32 +141,54 @@ void Domains<Motion>::load(const typename Engine<Motion>::Image& rest, const Rea
   overlaps_ = std::move(overlaps);
 }
 
-/// Whether what bodies of any process rest on is stored in one of them.
+/// Whether what bodies of any process rest on is stored in one of them, and, unless it is fixed, rests on them too.
 template <class Motion>
 bool Domains<Motion>::carriers_are_there() {
+  const auto& bodies = store_.bodies();
   std::vector<BodySlot> wanted;
   store_.each_carrier([&](BodySlot number) { wanted.push_back(number); });
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   std::array<std::uint64_t, 2> counts{wanted.size(), 0};  // of those that are wanted, and of those that are there
-  const auto look = [&](const std::vector<BodySlot>& numbers) {
+  std::vector<BodySlot> fixed;                            // of those that are wanted here
+  const auto look = [&](const std::vector<BodySlot>& numbers, std::vector<BodySlot>& found_fixed) {
     for (const BodySlot number : numbers) {
       const BodySlot slot = store_.find(number);
-      if (slot != no_body && store_.bodies().entered(slot)) ++counts[1];
+      if (slot == no_body || !bodies.entered(slot)) continue;
+      ++counts[1];
+      if (bodies.fixed(slot)) found_fixed.push_back(number);
     }
   };
-  look(wanted);
-  Letters letters;
+  look(wanted, fixed);
+  Letters questions, answers;
   for (std::size_t process = 0; process < team_.count() && !wanted.empty(); ++process) {
-    if (process != team_.rank()) letters.to(process)(wanted);
+    if (process != team_.rank()) questions.to(process)(wanted);
   }
-  team_.exchange(std::move(letters), [&](std::size_t, auto& reader) {
+  team_.exchange(std::move(questions), [&](std::size_t process, auto& reader) {
+    std::vector<BodySlot> heard, found;
+    reader(heard);
+    look(heard, found);
+    if (!found.empty()) answers.to(process)(found);
+  });
+  team_.exchange(std::move(answers), [&](std::size_t, auto& reader) {
     std::vector<BodySlot> heard;
     reader(heard);
-    look(heard);
+    fixed.insert(fixed.end(), heard.begin(), heard.end());
   });
-  team_.combine(counts, {});
-  return counts[0] == counts[1];
+  std::sort(fixed.begin(), fixed.end());
+  // What the first of two brings is taken away by what the second brings.
+  std::array<std::uint64_t, 3> sums{counts[0], counts[1], 0};
+  for (BodySlot slot = 0; slot < bodies.slots(); ++slot) {
+    if (!bodies.alive(slot)) continue;
+    const BodySlot self = bodies.number(slot);
+    store_.engine().transfer().kept_resting(slot).each_contact(self, [&](BodySlot other, std::uint64_t what) {
+      if (std::ranges::binary_search(fixed, other)) return;
+      const std::uint64_t hash = number_hash(std::min(self, other)) * (number_hash(std::max(self, other)) + what);
+      sums[2] += self < other ? hash : -hash;
+    });
+  }
+  team_.combine(sums, {});
+  return sums[0] == sums[1] && sums[2] == 0;
 }
 
 /// Throws std::runtime_error if a sensor of this process cannot be one that is attached to a body of this process.

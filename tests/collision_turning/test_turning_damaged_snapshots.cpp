@@ -1,11 +1,16 @@
-// Snapshots of bodies that turn that have been damaged, everywhere and in several ways: they are refused, or give a
-// world that runs.
+// Snapshots of bodies that turn that have been damaged, everywhere and in several ways, and scenes in parts: they are
+// refused, or give a world that runs.
+#include "collision/parallel/parallel_world.hpp"
+#include "collision/parallel/saved_bodies.hpp"
 #include "collision/world.hpp"
 #include "kds/framework/snapshot.hpp"
+#include "tests/collision/parallel/states_in_parts.hpp"
+#include "tests/collision_turning/rest_scenes.hpp"
 #include "tests/support/damaged_bytes.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <exception>
@@ -26,6 +31,7 @@ constexpr int most_steps = 20;
 constexpr double most_seconds = 20;
 /// One byte of so many is damaged, others by each kind of damage.
 constexpr std::size_t every = 3;
+constexpr std::size_t every_in_parts = 23;  ///< of which each makes domains
 
 WorldOptions box() {
   WorldOptions options;
@@ -34,7 +40,8 @@ WorldOptions box() {
   return options;
 }
 
-/// A ball, a box, which precesses, and a capsule, a top: in flight, or put down to come to rest.
+/// A ball, a box, which precesses, and a capsule, a top: in flight, or put down to come to rest, with one more box on
+/// the box.
 template <int Degree>
 void fill(TurningWorld<Degree>& world, bool fall) {
   using Motion = certificates::RigidMotion<Degree>;
@@ -49,6 +56,11 @@ void fill(TurningWorld<Degree>& world, bool fall) {
       motion.path.coefficients[2] = Vector3d(0, 0, -5);
     }
     world.add_body({.shape = shapes[std::size_t(i)], .motion = {motion}, .restitution = 0.3, .friction = 0.5});
+  }
+  if constexpr (Degree == 2) {
+    if (!fall) return;
+    world.add_body(kds::tests::rest::fixed(Box{{3, 3, 0.1}}, {0, 0, -3.8}));
+    world.add_body(kds::tests::rest::body(Box{{0.3, 0.3, 0.1}}, {0, 0.1, -2.95}));
   }
 }
 
@@ -99,6 +111,102 @@ void damage_everywhere(bool fall, double until) {
   }
   CHECK(refused > 300);
   CHECK(accepted > 300);
+}
+
+/// Two stacks of crates far from each other, in two domains, saved in parts: the one rests, the other is about to.
+struct Stacks {
+  WorldOptions options{.response = Response::elastic};
+  ParallelOptions parallel{.threads = 1, .domains = 2, .halo = 0.5};
+
+  Stacks() { options.shortest_flight = 0.02; }
+  static void fill(TurningWorld<2>& world) {
+    for (const double x : {0.0, 12.0}) {
+      for (int k = 0; k < 2; ++k)
+        world.add_body(kds::tests::rest::body(Box{{0.5, 0.5, 0.5}}, {x, 0, 0.5 + k + 0.05 * x}));
+    }
+    world.add_body(kds::tests::rest::ground());
+  }
+  collision::tests::StateInParts saved(double until) const {
+    collision::tests::StateInParts state(1);
+    ParallelTurningWorld<2> divided(options, parallel);
+    fill(divided.whole());
+    divided.advance_to(until);
+    REQUIRE(divided.domains() == 2);
+    state.save(divided, 0, 2);
+    return state;
+  }
+  /// Of a state that is loaded by several processes; nothing if it is not refused.
+  std::string refusal(const Snapshot& rest, const std::vector<std::vector<char>>& blocks, std::size_t processes) const {
+    std::vector<std::string> said(processes);
+    collision::tests::run_by(processes, [&](Processes* others, std::size_t rank) {
+      ParallelTurningWorld<2> world(options, parallel, nullptr, others);
+      try {
+        world.load_parts(rest, collision::tests::share_of(blocks, rank, processes));
+      } catch (const std::runtime_error& error) {
+        said[rank] = error.what();
+        if (world.size() != 0) throw std::logic_error("it is changed");
+        return;
+      }
+      use(world.whole());
+    });
+    return said.front();
+  }
+};
+
+TEST_CASE("damaged: parts of a scene in which bodies that turn rest on each other", "[turning][parallel][damaged]") {
+  const Stacks stacks;
+  const auto state = stacks.saved(0.4);
+  const auto blocks = state.blocks();
+  REQUIRE(stacks.refusal(state.rest, blocks, 1).empty());
+  std::size_t refused = 0, accepted = 0, first = 0;
+  for (const kds::tests::Damage& damage : kds::tests::all_damages()) {
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      for (std::size_t at = first++ % every_in_parts; at < blocks[i].size(); at += every_in_parts) {
+        INFO(damage.name << " at byte " << at << " of block " << i);
+        auto wrong = blocks;
+        wrong[i] = damage.of(blocks[i], at);
+        const std::string said = stacks.refusal(state.rest, wrong, 1);
+        said.empty() ? ++accepted : ++refused;
+        if (!said.empty() && said.find("snapshot: ") != 0) FAIL(said);
+      }
+    }
+  }
+  CHECK(refused > 100);
+  CHECK(accepted > 100);
+}
+
+TEST_CASE("damaged: a body that turns and rests on one that does not rest on it is refused", "[turning][parallel]") {
+  const Stacks stacks;
+  const auto state = stacks.saved(0.4);
+  const auto blocks = state.blocks();
+  std::size_t links = 0;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    SavedBodies<certificates::RigidMotion<2>> saved;
+    kds::detail::Reader reader(blocks[i]);
+    reader(saved);
+    for (std::size_t k = 0; k < saved.parcel.resting.size(); ++k) {
+      const auto* const resting = saved.parcel.resting[k].state();
+      if (!resting || resting->links.size() < 2) continue;  // It lies on the ground alone.
+      ++links;
+      for (const bool forgets_all : {true, false}) {
+        auto other = saved;
+        auto changed = *resting;
+        for (auto& link : changed.links) link.pair.rests = !link.pair.rests;
+        changed.rests = changed.links.front().pair.rests;
+        other.parcel.resting[k] = forgets_all ? TurningRestProgress() : TurningRestProgress(changed);
+        kds::detail::Writer writer;
+        writer(other);
+        auto wrong = blocks;
+        wrong[i] = writer.take();
+        for (const std::size_t processes : {1u, 3u}) {
+          CHECK(stacks.refusal(state.rest, wrong, processes) ==
+                "snapshot: a body rests on one that is not there, or does not rest on it");
+        }
+      }
+    }
+  }
+  CHECK(links > 0);
+  for (const std::size_t processes : {1u, 3u}) CHECK(stacks.refusal(state.rest, blocks, processes).empty());
 }
 
 TEST_CASE("damaged: bodies that turn on lines", "[turning][snapshot][damaged]") { damage_everywhere<1>(false, 0.7); }

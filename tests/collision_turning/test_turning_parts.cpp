@@ -1,4 +1,5 @@
 // The parts of a world that are about bodies that turn, each by itself.
+#include "collision/parallel/motion_changes.hpp"
 #include "collision/world/bodies_image.hpp"
 #include "collision/world/resting/resting_contacts.hpp"
 #include "collision/world/turning/tumbling.hpp"
@@ -11,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -391,7 +393,7 @@ TEST_CASE("Rest of bodies that turn: another world goes on with all that lies wi
   other.rest.audit(other.clock.now);
   part.rest.set_aside();
   CHECK(part.rest.empty());
-  CHECK_FALSE(part.rest.kept(balls[0]).is_none());
+  CHECK_FALSE(part.rest.kept()[balls[0]].is_none());
   part.rest.go_on();
   CHECK(same_bits(other.rest.progress(balls[1]), part.rest.progress(balls[1])));
   part.rest.audit(part.clock.now);
@@ -413,6 +415,179 @@ TEST_CASE("Rest of bodies that turn: what decides later when a body rests is in 
   CHECK(progress.state()->looked == part.clock.now);  // The other has not been calm for long enough.
   CHECK(progress.state()->carrier.velocity == Vector3d(0x1p-10, 0, 0));
   CHECK(progress.state()->links.size() == 2);
+}
+
+TEST_CASE("Rest of bodies that turn: what decides nothing any more is not in a progress", "[turning]") {
+  Lying part, other;
+  const std::vector balls{part.add_ball(0), part.add_ball(2)};
+  for (const double x : {0.0, 2.0}) other.add_ball(x);
+  const auto still = part.bodies.motion(part.floor);
+  auto belt = still;
+  belt.path.coefficients[1][0] = 0x1p-10;
+  part.bodies.move(part.floor, belt);
+  const auto goes_on = [&](BodySlot ball) {
+    other.clock = part.clock;
+    other.rest.go_on_from(ball, part.rest.progress(ball), [](BodySlot number) { return number; });
+    const bool same = same_bits(other.rest.progress(ball), part.rest.progress(ball));
+    other.rest.let_go(ball);
+    return same;
+  };
+  for (int flight = 0; flight <= 8; ++flight) {
+    if (flight == 4) part.touch(balls[1], flight), part.meet_beside(balls[0], balls[1]);
+    part.touch(balls[0], flight);
+  }
+  REQUIRE(part.rest.progress(balls[0]).state()->looked == part.clock.now);
+  auto fast = part.bodies.motion(balls[1]);
+  fast.path.coefficients[1][1] = 1;
+  part.bodies.move(balls[1], fast);
+  part.meet(balls[1], {.time = part.clock.now, .normal = {0, 0, 1}});  // parts from the other
+  CHECK(part.rest.progress(part.floor).is_none());
+  CHECK(goes_on(balls[0]));
+
+  fast = part.bodies.motion(balls[0]);
+  fast.path.coefficients[1][1] = 1;
+  part.bodies.move(balls[0], fast);
+  part.meet(balls[0], {.time = part.clock.now, .normal = {0, 0, 1}});
+  CHECK(part.rest.progress(balls[0]).is_none());
+  part.bodies.move(part.floor, still);
+  part.touch(balls[0], 9);  // It is calm anew.
+  REQUIRE(part.rest.progress(balls[0]).state());
+  CHECK(part.rest.progress(balls[0]).state()->looked == -never);
+  for (int flight = 10; flight < 40 && !part.rest.carries(balls[0]); ++flight) part.touch(balls[0], flight);
+  REQUIRE(part.rest.carries(balls[0]));
+  const Vector3d impulse(0x1p-30, 0, 0);
+  const auto mobility = [](BodySlot) { return Mobility::of_spherical(1, 1 / 0.4); };
+  REQUIRE_FALSE(part.rest.strike(balls[0], -impulse, balls[1], impulse, impulse, mobility));
+  CHECK(part.rest.progress(balls[0]).state()->ignored.velocity[0] != 0);
+  CHECK(goes_on(balls[0]));
+  CHECK(other.rest.empty());
+  CHECK_FALSE(part.rest.leans(part.floor));
+  part.rest.drop_all(part.floor);
+  part.rest.solve();
+  part.touch(balls[0], 50);
+  REQUIRE(part.rest.progress(balls[0]).state());
+  CHECK(part.rest.progress(balls[0]).state()->ignored.since == -never);
+}
+
+TEST_CASE("Rest of bodies that turn: how what carried a body moves is not in its progress", "[turning]") {
+  Lying part;
+  const std::vector balls{part.add_ball(0), part.add_ball(2)};
+  auto belt = part.bodies.motion(part.floor);
+  belt.path.coefficients[1][0] = 0x1p-10;
+  part.bodies.move(part.floor, belt);
+  part.touch(balls[1], 0);
+  part.meet_beside(balls[0], balls[1]);
+  REQUIRE(part.rest.progress(balls[0]).state()->carrier.velocity[0] != 0);
+  part.rest.drop_all(balls[1]);
+  REQUIRE(part.rest.progress(balls[0]).state());  // It is calm.
+  CHECK(part.rest.progress(balls[0]).state()->carrier.velocity[0] == 0);
+}
+
+TEST_CASE("Rest of bodies that turn: who has lost others, or is looked at with them, has changed", "[turning]") {
+  using Slots = std::vector<BodySlot>;
+  Lying part;
+  const Slots balls{part.add_ball(0), part.add_ball(2), part.add_ball(4)};
+  part.rest.shared().set_owned([&](BodySlot slot) { return slot == balls[0]; });
+  part.rest.begin_shared();
+  const auto touched = [&](BodySlot slot) {
+    const Slots all = part.rest.take_touched();
+    return std::find(all.begin(), all.end(), slot) != all.end();
+  };
+  // A row that nothing holds: what is found of the last follows from a contact of the others.
+  for (const int flight : {0, 1, 2, 3, 4, 5, 6, 7, 9}) {
+    part.clock.now = flight * part.options.shortest_flight;
+    for (const BodySlot ball : balls) {
+      const double x = part.bodies.path(ball).coefficients[0][0];
+      part.bodies.move(ball, Lying::at({x, 0, 1}, Lying::gravity, part.clock.now));
+    }
+    if (flight < 8) part.meet_beside(balls[1], balls[2]);
+    part.rest.take_touched();
+    part.meet_beside(balls[0], balls[1]);
+  }
+  CHECK(touched(balls[2]));
+  REQUIRE(part.rest.progress(balls[2]).state());
+  CHECK(part.rest.progress(balls[2]).state()->looked == part.clock.now);
+  // One that does not rest, and goes, concerns those that it was about to lie with.
+  part.rest.shared().take_concerned();
+  part.rest.drop_all(balls[2]);
+  CHECK(part.rest.shared().take_concerned() == std::vector<Slots>{balls});
+  part.rest.begin_shared();
+  CHECK(part.rest.take_touched().empty());
+  for (const BodySlot ball : balls) part.rest.drop_all(ball);
+
+  // A floor that goes concerns what rests on it.
+  const double before = part.clock.now / part.options.shortest_flight;
+  for (int flight = 1; flight <= 40 && !part.rest.carries(balls[0]); ++flight) {
+    for (const BodySlot ball : {balls[0], balls[1]}) part.touch(ball, before + flight);
+    part.meet_beside(balls[0], balls[1]);
+  }
+  REQUIRE(part.rest.carries(balls[0]));
+  part.rest.begin_shared();
+  part.rest.drop_all(part.floor);
+  const auto concerned = part.rest.shared().take_concerned();
+  REQUIRE_FALSE(concerned.empty());
+  CHECK(concerned.front() == Slots{balls[0], balls[1]});
+}
+
+TEST_CASE("Rest of bodies that turn: all of a progress is compared, and sent as it is", "[turning]") {
+  using State = TurningRestProgress::State;
+  const detail::TouchedPlace place{{1, 2, 3}, {4, 5, 6}, {0, 0, 1}, 0.5};
+  const detail::LyingPair pair{true, {place}, {0, 0, 1}, {1, 0, 0}};
+  const State state{.links = {{7, pair}, {9, pair}},
+                    .since = 0.25,
+                    .looked = 0.5,
+                    .rests = true,
+                    .ignored = {0.125, {1, 0, 0}, {0, 1, 0}},
+                    .carrier = {{1, 0, 0}, {0, 0, 1}, 0.5}};
+  const std::vector<void (*)(State&)> changes{
+      [](State& s) { s.links.pop_back(); },
+      [](State& s) { s.links[1].other = 8; },
+      [](State& s) { s.links[1].pair.rests = false; },
+      [](State& s) { s.links[1].pair.normal[2] = -1; },
+      [](State& s) { s.links[1].pair.point[1] = -0.0; },
+      [](State& s) { s.links[1].pair.places.clear(); },
+      [](State& s) { s.links[1].pair.places[0].on_a[0] = 0; },
+      [](State& s) { s.links[1].pair.places[0].on_b[0] = 0; },
+      [](State& s) { s.links[1].pair.places[0].normal[1] = -0.0; },
+      [](State& s) { s.links[1].pair.places[0].time = 0.25; },
+      [](State& s) { s.since = never; },
+      [](State& s) { s.looked = -never; },
+      [](State& s) { s.rests = false; },
+      [](State& s) { s.ignored.since = 0; },
+      [](State& s) { s.ignored.velocity[1] = -0.0; },
+      [](State& s) { s.ignored.angular_velocity[0] = -0.0; },
+      [](State& s) { s.carrier.velocity[1] = -0.0; },
+      [](State& s) { s.carrier.half_acceleration[0] = -0.0; },
+      [](State& s) { s.carrier.start = 0; },
+  };
+  const TurningRestProgress before(state);
+  CHECK(same_bits(before, TurningRestProgress(state)));
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    INFO("change " << i);
+    State changed = state;
+    changes[i](changed);
+    const TurningRestProgress after(changed);
+    CHECK_FALSE(same_bits(before, after));
+    CHECK(same_bits(after, through_bytes(after)));
+  }
+  CHECK_FALSE(same_bits(before, TurningRestProgress()));
+  CHECK(same_bits(TurningRestProgress(), through_bytes(TurningRestProgress())));
+}
+
+TEST_CASE("Rest of bodies that turn: of two histories time, motion, turning and rest are compared", "[turning]") {
+  Spinning part;
+  const BodySlot slot = part.add();
+  const MotionChange<Spinning::Motion> change{1, Spinning::motion(), 0.5, part.tumbling.progress(slot), {}};
+  CHECK(same_bits(change, change));
+  auto other = change;
+  other.time = 0.25;
+  CHECK_FALSE(same_bits(change, other));
+  other = change, other.motion.angular_velocity[1] = -0.2;
+  CHECK_FALSE(same_bits(change, other));
+  other = change, other.turning = {};
+  CHECK_FALSE(same_bits(change, other));
+  other = change, other.resting = TurningRestProgress(TurningRestProgress::State{.since = 0.5});
+  CHECK_FALSE(same_bits(change, other));
 }
 
 TEST_CASE("Rest of bodies that turn: what wakes together gets its motions by slot", "[turning]") {

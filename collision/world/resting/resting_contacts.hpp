@@ -7,6 +7,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/resting/contact_gaps.hpp"
+#include "collision/world/resting/kept_progress.hpp"
 #include "collision/world/resting/resting_contact.hpp"
 #include "collision/world/resting/resting_progress.hpp"
 #include "collision/world/resting/shared_islands.hpp"
@@ -128,7 +129,7 @@ class RestingContacts {
     if (id < of_.size()) {
       of_[id] = {};
     }
-    if (id < kept_.size()) kept_[id] = {};
+    kept_.forget(id);
   }
 
   /// A caller moves a body: it leaves its cluster.
@@ -200,16 +201,15 @@ class RestingContacts {
   /// not here: then std::runtime_error is thrown. What leans on each other goes on together; require_listed() follows.
   void go_on_from(BodySlot id, const Progress& progress, const std::function<BodySlot(BodySlot)>& slot_of);
   /// Throws std::runtime_error if a body that has gone on leans on one that does not lean on it.
-  void require_listed();
+  void require_listed() { of_both_.require_listed(); }
   /// A body is removed with which another world goes on, and all that leans on it with it: nothing is told, and what is
   /// fixed goes on as it was.
   void let_go(BodySlot id);
   /// Other worlds run the bodies from now on: this one only keeps the progress of each, until go_on().
   void set_aside();
-  void go_on();
-  const Progress& kept(BodySlot id) const;
-  void keep(BodySlot id, const Progress& progress);
-  void forget_kept() { kept_.clear(); }
+  void go_on() { kept_.give_back(bodies_, *this); }
+  KeptProgress<Progress>& kept() { return kept_; }
+  const KeptProgress<Progress>& kept() const { return kept_; }
   /// The last event of process(), and, in a world whose bodies belong to another one, the bodies whose contacts have
   /// been solved for since this was called last, some of them several times.
   const detail::RestingEvent& last_event() const { return last_event_; }
@@ -349,8 +349,8 @@ class RestingContacts {
   std::uint64_t islands_ = 0;
   detail::RestingEvent last_event_;
   std::vector<BodySlot> solved_;
-  std::vector<Progress> kept_;   ///< by body, up to the last of which there is any
-  std::size_t half_listed_ = 0;  ///< contacts that only one of two bodies that are not fixed lists
+  KeptProgress<Progress> kept_;
+  ContactsOfBoth of_both_;
   SharedIslands shared_;
 };
 

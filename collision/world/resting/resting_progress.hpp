@@ -1,11 +1,12 @@
 // What rests of one body, on its way from one world to another.
 #pragma once
 
+#include "collision/world/resting/kept_progress.hpp"
 #include "collision/world/resting/resting_contact.hpp"
 #include "kds/certificate.hpp"
-#include "kds/framework/snapshot.hpp"
 
-#include <memory>
+#include <bit>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,13 @@ class RestingProgress {
     bool is_none() const {
       return contacts.empty() && span_ends == -never && calm_since == never && looked_at == never;
     }
+    /// Without what each world finds by itself: releases, and what is left behind.
+    State compared() const {
+      State state = *this;
+      state.releases.clear();
+      for (auto& contact : state.contacts) contact.left_behind = -never, contact.unfinished = false;
+      return state;
+    }
     template <class Archive>
     void archive(Archive& archive) {
       archive(contacts, releases, span_ends, calm_since, looked_at);
@@ -34,50 +42,44 @@ class RestingProgress {
 
   RestingProgress() = default;
   /// `met`: it has met a body that is not fixed.
-  RestingProgress(State state, bool met)
-      : state_(state.is_none() ? nullptr : std::make_shared<const State>(std::move(state))), met_(met) {}
+  RestingProgress(State state, bool met) : state_(std::move(state)), met_(met) {}
 
   /// Null if nothing rests.
   const State* state() const { return state_.get(); }
   bool met() const { return met_; }
-  bool is_none() const { return !state_ && !met_; }
+  bool is_none() const { return !state() && !met_; }
   /// Calls take(number) for each body with which this one, by its number, has a contact.
   template <class Take>
   void each_other(BodySlot self, const Take& take) const {
-    if (!state_) return;
-    for (const auto& contact : state_->contacts) {
+    if (!state()) return;
+    for (const auto& contact : state()->contacts) {
       if (contact.b != no_body) take(contact.a == self ? contact.b : contact.a);
+    }
+  }
+  /// Calls take(number, what) for each of these contacts. Of two bodies that are not fixed both have the same, by
+  /// `what` too.
+  template <class Take>
+  void each_contact(BodySlot self, const Take& take) const {
+    if (!state()) return;
+    for (const auto& contact : state()->contacts) {
+      if (contact.b == no_body) continue;
+      std::uint64_t what = 0;
+      for (const double x : contact.normal) what = 3 * what + std::bit_cast<std::uint64_t>(x);
+      take(contact.a == self ? contact.b : contact.a, what);
     }
   }
 
   template <class Archive>
   void archive(Archive& archive) {
-    bool rests = state_ != nullptr;
-    archive(met_, rests);
-    if constexpr (Archive::loading) state_ = nullptr;
-    if (!rests) return;
-    State state = state_ ? *state_ : State();
-    archive(state);
-    if constexpr (Archive::loading) state_ = std::make_shared<const State>(std::move(state));
+    archive(met_, state_);
   }
 
-  /// Whether they are the same, but for what each world finds by itself: releases, and what is left behind.
   friend bool same_bits(const RestingProgress& a, const RestingProgress& b) {
-    if (a.met_ != b.met_) return false;
-    if (!a.state_ || !b.state_) return !a.state_ && !b.state_;
-    return bytes_of(*a.state_) == bytes_of(*b.state_);
+    return a.met_ == b.met_ && same_bits(a.state_, b.state_);
   }
 
  private:
-  static std::vector<char> bytes_of(State state) {
-    state.releases.clear();
-    for (auto& contact : state.contacts) contact.left_behind = -never, contact.unfinished = false;
-    kds::detail::Writer writer;
-    writer(state);
-    return writer.take();
-  }
-
-  std::shared_ptr<const State> state_;
+  RestingState<State> state_;
   bool met_ = false;
 };
 

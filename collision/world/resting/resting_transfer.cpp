@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -62,22 +60,19 @@ void RestingContacts<Motion>::go_on_from(BodySlot id, const Progress& progress,
     for (BodySlot* const body : {&contact.a, &contact.b}) {
       if (*body == no_body) continue;
       const BodySlot slot = *body == bodies_.number(id) ? id : slot_of(*body);
-      if (slot == no_body) {
-        throw std::runtime_error("World: body " + std::to_string(bodies_.number(id)) +
-                                 " rests on one that is not there");
-      }
+      if (slot == no_body) ContactsOfBoth::refuse(bodies_.number(id));
       *body = slot;
     }
     const BodySlot other = contact.a == id ? contact.b : contact.a;
     const bool leans = other != no_body && !bodies_.fixed(other);
     if (const Slot slot = leans ? listed_by_other(contact, id) : none; slot != none) {
       list(slot, id);
-      --half_listed_;
+      of_both_.brought_by_second();
       continue;
     }
     const Slot slot = give_slot(contact);
     list(slot, id);
-    leans ? void(++half_listed_) : list(slot, other);
+    leans ? of_both_.brought_by_first() : list(slot, other);
     if (state.releases[i] < (Motion::degree <= 2 ? never : contact.ends)) {
       releases_.set(slot, state.releases[i]);
     } else {
@@ -99,12 +94,6 @@ typename RestingContacts<Motion>::Slot RestingContacts<Motion>::listed_by_other(
     if (std::find(mine.begin(), mine.end(), slot) == mine.end()) return slot;
   }
   return none;
-}
-
-template <class Motion>
-void RestingContacts<Motion>::require_listed() {
-  if (std::exchange(half_listed_, 0) != 0)
-    throw std::runtime_error("World: a body rests on one that does not rest on it");
 }
 
 template <class Motion>
@@ -180,38 +169,10 @@ void RestingContacts<Motion>::note_concerned(const Island& island) {
 
 template <class Motion>
 void RestingContacts<Motion>::set_aside() {
-  kept_.clear();
-  for (BodySlot id = 0; id < of_.size(); ++id) {
-    if (bodies_.alive(id)) keep(id, progress(id));
-  }
+  kept_.take(bodies_, *this, of_.size());
   contacts_.clear(), free_.clear(), of_.clear(), disturbed_.clear();
   releases_.resize(0);
   spans_.resize(0);
-}
-
-template <class Motion>
-void RestingContacts<Motion>::go_on() {
-  const auto slot_of = [this](BodySlot slot) { return bodies_.alive(slot) ? slot : no_body; };
-  for (BodySlot id = 0; id < kept_.size(); ++id) {
-    if (bodies_.alive(id)) go_on_from(id, kept_[id], slot_of);
-  }
-  require_listed();
-  kept_.clear();
-}
-
-template <class Motion>
-const RestingProgress& RestingContacts<Motion>::kept(BodySlot id) const {
-  static const Progress nothing;
-  return id < kept_.size() ? kept_[id] : nothing;
-}
-
-template <class Motion>
-void RestingContacts<Motion>::keep(BodySlot id, const Progress& progress) {
-  if (id >= kept_.size()) {
-    if (progress.is_none()) return;
-    kept_.resize(id + std::size_t{1});
-  }
-  kept_[id] = progress;
 }
 
 #define KDS_INSTANTIATE(motion) KDS_TEMPLATE_PART class RestingContacts<motion>;

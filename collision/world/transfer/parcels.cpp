@@ -19,7 +19,7 @@ Parcel<Motion> Transfer<Motion>::pack(std::span<const BodySlot> slots,
     parcel.numbers.push_back(parts_.bodies.number(slot));
     parcel.to_come.emplace_back(to_come.begin(), to_come.end());
     parcel.turning.push_back(parts_.tumbling.progress(slot));
-    parcel.resting.push_back(parts_.resting.kept(slot));
+    parcel.resting.push_back(parts_.resting.kept()[slot]);
   }
   return parcel;
 }
@@ -33,7 +33,7 @@ void Transfer<Motion>::resume(const Parcel<Motion>& parcel, std::size_t place, B
     const auto& turning = parcel.turning[place];
     if (turning.body()) parts_.tumbling.add(slot, turning.body()->inertia), parts_.tumbling.go_on_from(slot, turning);
   }
-  parts_.resting.keep(slot, parcel.resting[place]);
+  parts_.resting.kept().keep(slot, parcel.resting[place]);
 }
 
 template <class Motion>
@@ -64,7 +64,7 @@ void Transfer<Motion>::lend() {
   parts_.bodies.lend();
   parts_.scripts.become({});
   parts_.tumbling.become({});
-  parts_.resting.forget_kept();
+  parts_.resting.kept().clear();
 }
 
 template <class Motion>

@@ -44,7 +44,7 @@ std::vector<BodySlot> Transfer<Motion>::take_in(const Transfer& from, std::span<
       return slot != no_body ? slot : slot_among(known, number);
     };
     for (std::size_t i = 0; i < slots.size(); ++i) {
-      parts_.resting.go_on_from(taken[i], from.parts_.resting.kept(slots[i]), slot_of);
+      parts_.resting.go_on_from(taken[i], from.parts_.resting.kept()[slots[i]], slot_of);
     }
     parts_.resting.require_listed();
     membership_.enter(entering, Pairs<Motion>::Begin::moving);

@@ -61,8 +61,8 @@ class Transfer {
   /// What rests of a body of a world that runs.
   Resting resting(BodySlot slot) const { return parts_.resting.progress(slot); }
   /// The same of one that has been set aside, or only stores bodies: what it has been told last.
-  Resting kept_resting(BodySlot slot) const { return parts_.resting.kept(slot); }
-  void keep_resting(BodySlot slot, const Resting& resting) { parts_.resting.keep(slot, resting); }
+  Resting kept_resting(BodySlot slot) const { return parts_.resting.kept()[slot]; }
+  void keep_resting(BodySlot slot, const Resting& resting) { parts_.resting.kept().keep(slot, resting); }
   /// As RestingContacts::take_solved().
   std::vector<BodySlot> take_solved() { return parts_.resting.take_solved(); }
   /// Other worlds have run to t: bodies have entered, pieces of scripts have begun, timers have rung.

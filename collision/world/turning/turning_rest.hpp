@@ -9,6 +9,7 @@
 #include "collision/world/bodies.hpp"
 #include "collision/world/clock.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/resting/kept_progress.hpp"
 #include "collision/world/resting/resting_contact.hpp"
 #include "collision/world/resting/shared_islands.hpp"
 #include "collision/world/turning/carrier.hpp"
@@ -101,10 +102,7 @@ class TurningRest {
 
   /// A body jumps, is removed, or gets a motion from a caller: what it rests on, and what rests on it, wakes.
   void drop_all(BodySlot slot);
-  void forget(BodySlot slot) {
-    drop_all(slot);
-    if (slot < kept_.size()) kept_[slot] = {};
-  }
+  void forget(BodySlot slot) { drop_all(slot), kept_.forget(slot); }
   /// The same if it has touched a body that it may not collide with any more; otherwise forgets only its contacts of a
   /// collapse, and returns false.
   bool drop_filtered(BodySlot slot);
@@ -129,15 +127,14 @@ class TurningRest {
   /// that a collapse may have to be resolved with.
   bool divisible() const { return solved() && !blows_.any(clock_.now); }
   Progress progress(BodySlot slot) const;
-  /// As RestingContacts, as are the next seven.
+  /// As RestingContacts, as are the next six.
   void go_on_from(BodySlot slot, const Progress& progress, const std::function<BodySlot(BodySlot)>& slot_of);
-  void require_listed();
+  void require_listed() { of_both_.require_listed(); }
   void let_go(BodySlot slot);
   void set_aside();
-  void go_on();
-  const Progress& kept(BodySlot slot) const;
-  void keep(BodySlot slot, const Progress& progress);
-  void forget_kept() { kept_.clear(); }
+  void go_on() { kept_.give_back(bodies_, *this); }
+  KeptProgress<Progress>& kept() { return kept_; }
+  const KeptProgress<Progress>& kept() const { return kept_; }
   static detail::RestingEvent last_event() { return {}; }  ///< it has none of its own
   static std::vector<BodySlot> take_solved() { return {}; }
 
@@ -279,8 +276,8 @@ class TurningRest {
   std::size_t resting_ = 0;  ///< pairs that rest
   std::uint64_t walks_ = 0;
   detail::Blows blows_;
-  std::vector<Progress> kept_;     ///< by body, up to the last of which there is any
-  std::size_t half_listed_ = 0;    ///< pairs of bodies that are not fixed of which only one has gone on
+  KeptProgress<Progress> kept_;
+  ContactsOfBoth of_both_;
   std::vector<BodySlot> touched_;  ///< take_touched()
   SharedIslands shared_;
 };

@@ -35,7 +35,7 @@ typename TurningRest<Motion>::Image TurningRest<Motion>::image() const {
 
 template <class Motion>
 void TurningRest<Motion>::become(const Image& image) {
-  pairs_.clear(), of_.clear();
+  pairs_.clear(), of_.clear(), kept_.clear();
   of_.resize(image.since.size());
   resting_ = 0;
   for (BodySlot slot = 0; slot < of_.size(); ++slot) {

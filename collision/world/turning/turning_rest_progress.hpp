@@ -3,14 +3,14 @@
 
 #include "collision/body_id.hpp"
 #include "collision/world/image_tools.hpp"
+#include "collision/world/resting/kept_progress.hpp"
 #include "collision/world/turning/carrier.hpp"
 #include "kds/certificate.hpp"
-#include "kds/framework/snapshot.hpp"
 
 #include <Eigen/Core>
 
 #include <cmath>
-#include <memory>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -95,6 +95,7 @@ class TurningRestProgress {
     turning_rest::Carrier carrier{};  ///< if there are links
 
     bool is_none() const { return links.empty() && since == never; }
+    const State& compared() const { return *this; }
     template <class Archive>
     void archive(Archive& archive) {
       archive(since, looked, rests, ignored, carrier);
@@ -103,43 +104,35 @@ class TurningRestProgress {
   };
 
   TurningRestProgress() = default;
-  explicit TurningRestProgress(State state)
-      : state_(state.is_none() ? nullptr : std::make_shared<const State>(std::move(state))) {}
+  explicit TurningRestProgress(State state) : state_(std::move(state)) {}
 
   /// Null if nothing rests or is about to.
   const State* state() const { return state_.get(); }
-  bool is_none() const { return !state_; }
+  bool is_none() const { return !state(); }
   /// Calls take(number) for each body with which this one lies, or is about to.
   template <class Take>
   void each_other(BodySlot, const Take& take) const {
-    if (!state_) return;
-    for (const Link& link : state_->links) take(link.other);
+    if (!state()) return;
+    for (const Link& link : state()->links) take(link.other);
+  }
+  /// As RestingProgress.
+  template <class Take>
+  void each_contact(BodySlot, const Take& take) const {
+    if (!state()) return;
+    for (const Link& link : state()->links) take(link.other, std::uint64_t{link.pair.rests});
   }
 
   template <class Archive>
   void archive(Archive& archive) {
-    bool any = state_ != nullptr;
-    archive(any);
-    if constexpr (Archive::loading) state_ = nullptr;
-    if (!any) return;
-    State state = state_ ? *state_ : State();
-    archive(state);
-    if constexpr (Archive::loading) state_ = std::make_shared<const State>(std::move(state));
+    archive(state_);
   }
 
   friend bool same_bits(const TurningRestProgress& a, const TurningRestProgress& b) {
-    if (!a.state_ || !b.state_) return !a.state_ && !b.state_;
-    return a.state_ == b.state_ || bytes_of(*a.state_) == bytes_of(*b.state_);
+    return same_bits(a.state_, b.state_);
   }
 
  private:
-  static std::vector<char> bytes_of(State state) {
-    kds::detail::Writer writer;
-    writer(state);
-    return writer.take();
-  }
-
-  std::shared_ptr<const State> state_;
+  RestingState<State> state_;
 };
 
 }  // namespace kds::collision

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <stdexcept>
-#include <string>
 #include <unordered_set>
 #include <utility>
 #include <vector>
@@ -38,30 +36,20 @@ void TurningRest<Motion>::go_on_from(BodySlot slot, const Progress& progress,
   body.ignored = state.ignored, body.carrier = state.carrier;
   for (const Progress::Link& link : state.links) {
     const BodySlot other = slot_of(link.other);
-    if (other == no_body) {
-      throw std::runtime_error("World: body " + std::to_string(bodies_.number(slot)) +
-                               " rests on one that is not there");
-    }
+    if (other == no_body) ContactsOfBoth::refuse(bodies_.number(slot));
     const Key key = bodies_.in_order(slot, other);
     if (pairs_.contains(key)) {  // The other, which is not fixed, has gone on before.
-      --half_listed_;
+      of_both_.brought_by_second();
       continue;
     }
-    if (!bodies_.fixed(other)) ++half_listed_;
+    if (!bodies_.fixed(other)) of_both_.brought_by_first();
     list(key) = link.pair;
     resting_ += link.pair.rests;
   }
 }
 
 template <class Motion>
-void TurningRest<Motion>::require_listed() {
-  if (std::exchange(half_listed_, 0) != 0)
-    throw std::runtime_error("World: a body rests on one that does not rest on it");
-}
-
-template <class Motion>
 void TurningRest<Motion>::let_go(BodySlot slot) {
-  blows_.forget(slot);
   if (slot >= of_.size()) return;
   while (!of_[slot].others.empty()) {
     const Key key = bodies_.in_order(slot, of_[slot].others.back());
@@ -73,38 +61,9 @@ void TurningRest<Motion>::let_go(BodySlot slot) {
 
 template <class Motion>
 void TurningRest<Motion>::set_aside() {
-  kept_.clear();
-  for (BodySlot slot = 0; slot < of_.size(); ++slot) {
-    if (bodies_.alive(slot)) keep(slot, progress(slot));
-  }
+  kept_.take(bodies_, *this, of_.size());
   pairs_.clear(), of_.clear();
-  blows_.become({});
   resting_ = 0;
-}
-
-template <class Motion>
-void TurningRest<Motion>::go_on() {
-  const auto slot_of = [this](BodySlot slot) { return bodies_.alive(slot) ? slot : no_body; };
-  for (BodySlot slot = 0; slot < kept_.size(); ++slot) {
-    if (bodies_.alive(slot)) go_on_from(slot, kept_[slot], slot_of);
-  }
-  require_listed();
-  kept_.clear();
-}
-
-template <class Motion>
-const TurningRestProgress& TurningRest<Motion>::kept(BodySlot slot) const {
-  static const Progress nothing;
-  return slot < kept_.size() ? kept_[slot] : nothing;
-}
-
-template <class Motion>
-void TurningRest<Motion>::keep(BodySlot slot, const Progress& progress) {
-  if (slot >= kept_.size()) {
-    if (progress.is_none()) return;
-    kept_.resize(slot + std::size_t{1});
-  }
-  kept_[slot] = progress;
 }
 
 /// Bodies that are not fixed.

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -82,10 +83,10 @@ class BendingStageMaker {
   Random random_;
 };
 
-/// As compare_stagings(); by hand KDS_BENDING_SEEDS="FIRST LAST".
+/// As compare_stagings(); by hand KDS_BENDING_SEEDS.
 template <class Motion>
-void compare_bending_stagings(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  compare_seeds<BendingStageMaker<Motion>>("KDS_BENDING_SEEDS", first, count, most_domains, seen);
+void compare_bending_stagings(std::initializer_list<Seeds> seeds, Seen& seen) {
+  compare_seeds<BendingStageMaker<Motion>>("KDS_BENDING_SEEDS", seeds, seen);
 }
 
 }  // namespace kds::collision::tests

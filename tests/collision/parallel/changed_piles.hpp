@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -143,22 +144,22 @@ std::uint64_t compare_changed_by(const Staging<Motion>& scene, Manner manner, st
   return asked;
 }
 
-template <int Degree>
-std::uint64_t compare_changed(const Staging<certificates::PointMotion<Degree>>& scene, const Manner& manner,
-                              std::uint64_t seed, Seen& seen) {
-  return compare_changed_by(scene, manner, seed, seen, change_pile<Degree>);
-}
-
-/// Of some seeds.
-template <int Degree, class Maker>
-std::uint64_t compare_seeds_changed(std::uint64_t first, std::uint64_t count, Seen& seen) {
+/// Of some seeds; more by hand: each_seed().
+template <class Maker, class Change>
+std::uint64_t compare_seeds_changed_by(const char* variable, std::initializer_list<Seeds> seeds, Seen& seen,
+                                       const Change& change) {
   std::uint64_t asked = 0;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+  each_seed(variable, seeds, [&](std::uint64_t seed, std::size_t most_domains) {
     Maker maker(seed);
     const auto scene = maker.scene();
-    asked += compare_changed<Degree>(scene, maker.manner(8), seed, seen);
-  }
+    asked += compare_changed_by(scene, maker.manner(most_domains), seed, seen, change);
+  });
   return asked;
+}
+
+template <int Degree, class Maker>
+std::uint64_t compare_seeds_changed(const char* variable, std::initializer_list<Seeds> seeds, Seen& seen) {
+  return compare_seeds_changed_by<Maker>(variable, seeds, seen, change_pile<Degree>);
 }
 
 }  // namespace kds::collision::tests

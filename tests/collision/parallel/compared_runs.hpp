@@ -5,6 +5,7 @@
 #include "collision/parallel/parallel_world.hpp"
 #include "kds/framework/snapshot.hpp"
 #include "tests/collision/parallel/parallel_log.hpp"
+#include "tests/collision/parallel/seeds.hpp"
 #include "tests/collision/parallel/states_in_parts.hpp"
 #include "tests/collision/parallel/thread_processes.hpp"
 #include "tests/collision/random_scenes.hpp"
@@ -12,11 +13,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <functional>
+#include <initializer_list>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace kds::collision::tests {
@@ -29,6 +31,26 @@ struct Staging {
   double end_time = 1;
   std::string what;
 };
+
+/// The scene of some bodies, of which a few carry sensors, balls of this radius, and perhaps a timer.
+template <class Motion>
+Staging<Motion> stage(Random& random, std::uint64_t seed, const WorldOptions& options,
+                      std::vector<BasicBodyDescription<Motion>> bodies, double sensor_radius, double end_time) {
+  const std::size_t owners = bodies.size();
+  for (BodyId owner = 0; owner < owners; ++owner) {
+    if (!random.one_in(25)) continue;
+    BasicBodyDescription<Motion> sensor{.shape = Sphere{sensor_radius}, .sensor = true};
+    sensor.attached_to = owner;
+    bodies.push_back(sensor);
+  }
+  const double timer = random.one_in(3) ? random.between(0, end_time) : -1;
+  const std::string what = "seed " + std::to_string(seed) + ", " + std::to_string(bodies.size()) + " bodies";
+  const auto fill = [bodies = std::move(bodies), timer](BasicWorld<Motion>& world) {
+    for (const auto& description : bodies) world.add_body(description);
+    if (timer >= 0) world.set_timer(timer);
+  };
+  return {options, fill, end_time, what};
+}
 
 /// How it is run in domains.
 struct Manner {
@@ -193,22 +215,15 @@ void compare_runs(const Staging<Motion>& scene, const Manner& manner, Seen& seen
                   what + ", gone on from by " + std::to_string(others));
 }
 
-/// Scenes that a maker makes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand, in
-/// place of these: the environment variable has "FIRST LAST".
+/// Scenes that a maker makes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand:
+/// each_seed().
 template <class Maker>
-void compare_seeds(const char* variable, std::uint64_t first, std::uint64_t count, std::size_t most_domains,
-                   Seen& seen) {
-  if (const char* seeds = std::getenv(variable)) {
-    std::istringstream text(seeds);
-    std::uint64_t last = 0;
-    text >> first >> last;
-    count = last - first + 1;
-  }
-  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+void compare_seeds(const char* variable, std::initializer_list<Seeds> seeds, Seen& seen) {
+  each_seed(variable, seeds, [&](std::uint64_t seed, std::size_t most_domains) {
     Maker maker(seed);
     const auto scene = maker.scene();
     compare_runs(scene, maker.manner(most_domains), seen);
-  }
+  });
 }
 
 }  // namespace kds::collision::tests

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <utility>
 
 namespace kds::collision::tests {
@@ -74,10 +75,10 @@ class LawStageMaker {
   SampleLaw law_;
 };
 
-/// As compare_stagings(); by hand KDS_LAW_SEEDS="FIRST LAST".
+/// As compare_stagings(); by hand KDS_LAW_SEEDS.
 template <class Motion>
-void compare_laws(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  compare_seeds<LawStageMaker<Motion>>("KDS_LAW_SEEDS", first, count, most_domains, seen);
+void compare_laws(std::initializer_list<Seeds> seeds, Seen& seen) {
+  compare_seeds<LawStageMaker<Motion>>("KDS_LAW_SEEDS", seeds, seen);
 }
 
 }  // namespace kds::collision::tests

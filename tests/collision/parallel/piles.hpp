@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -50,20 +51,7 @@ class PileMaker {
       add(place, Vector(number(-4, 4), number(-4, 4), number(-4, 0)));
     }
     if (random_.one_in(5)) add_lift();
-    const std::size_t owners = bodies_.size();
-    for (BodyId owner = 0; owner < owners; ++owner) {
-      if (!random_.one_in(25)) continue;
-      Description sensor{.shape = Sphere{2 * radius_}, .sensor = true};
-      sensor.attached_to = owner;
-      bodies_.push_back(sensor);
-    }
-    const double timer = random_.one_in(3) ? random_.between(0, end_time_) : -1;
-    const auto fill = [bodies = bodies_, timer](World<Degree>& world) {
-      for (const auto& description : bodies) world.add_body(description);
-      if (timer >= 0) world.set_timer(timer);
-    };
-    return {options, fill, end_time_,
-            "seed " + std::to_string(seed_) + ", " + std::to_string(bodies_.size()) + " bodies"};
+    return stage(random_, seed_, options, bodies_, 2 * radius_, end_time_);
   }
 
   /// How it may be run, in so many domains at most.
@@ -177,11 +165,10 @@ class PileMaker {
   std::vector<Description> bodies_;
 };
 
-/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand, in place of these:
-/// KDS_PILE_SEEDS="FIRST LAST".
+/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand: KDS_PILE_SEEDS.
 template <int Degree>
-void compare_piles(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  compare_seeds<PileMaker<Degree>>("KDS_PILE_SEEDS", first, count, most_domains, seen);
+void compare_piles(std::initializer_list<Seeds> seeds, Seen& seen) {
+  compare_seeds<PileMaker<Degree>>("KDS_PILE_SEEDS", seeds, seen);
 }
 
 }  // namespace kds::collision::tests

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
@@ -192,11 +193,10 @@ class StageMaker {
   double side_ = 0, end_time_ = 1;
 };
 
-/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand, in place of these:
-/// KDS_DOMAIN_SEEDS="FIRST LAST".
+/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand: KDS_DOMAIN_SEEDS.
 template <class Motion>
-void compare_stagings(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  compare_seeds<StageMaker<Motion>>("KDS_DOMAIN_SEEDS", first, count, most_domains, seen);
+void compare_stagings(std::initializer_list<Seeds> seeds, Seen& seen) {
+  compare_seeds<StageMaker<Motion>>("KDS_DOMAIN_SEEDS", seeds, seen);
 }
 
 }  // namespace kds::collision::tests

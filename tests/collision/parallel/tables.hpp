@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -175,11 +176,10 @@ class TableMaker {
   double spacing_ = 2, radius_ = 0.5, rebound_ = 1, end_time_ = 1;
 };
 
-/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand, in place of these:
-/// KDS_TABLE_SEEDS="FIRST LAST".
+/// Scenes of some seeds, each run in one manner; throws what compare_runs() throws. More by hand: KDS_TABLE_SEEDS.
 template <int Degree>
-void compare_tables(std::uint64_t first, std::uint64_t count, std::size_t most_domains, Seen& seen) {
-  compare_seeds<TableMaker<Degree>>("KDS_TABLE_SEEDS", first, count, most_domains, seen);
+void compare_tables(std::initializer_list<Seeds> seeds, Seen& seen) {
+  compare_seeds<TableMaker<Degree>>("KDS_TABLE_SEEDS", seeds, seen);
 }
 
 }  // namespace kds::collision::tests

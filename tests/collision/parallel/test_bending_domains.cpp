@@ -43,7 +43,7 @@ BodyDescription<2> trampoline() {
 TEMPLATE_TEST_CASE_SIG("Domains with meshes that bend have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_bending_stagings<Path<Degree>>(1, 25, 8, seen);
+  compare_bending_stagings<Path<Degree>>({{1, 25, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 1200);
   CHECK(seen.divided > 7);

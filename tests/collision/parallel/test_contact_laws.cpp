@@ -54,8 +54,7 @@ void add_balls(World<Degree>& world, int side) {
 TEMPLATE_TEST_CASE_SIG("Domains: bodies that respond by a law have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_laws<Path<Degree>>(1, 24, 8, seen);
-  compare_laws<Path<Degree>>(1001, 2, 100, seen);
+  compare_laws<Path<Degree>>({{1, 24, 8}, {1001, 2, 100}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 4000);
   CHECK(seen.divided > 10);

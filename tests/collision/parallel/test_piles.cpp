@@ -1,8 +1,6 @@
 // Bodies that lean on each other, in domains: the events are those of one world, bit for bit.
-#include "collision/parallel/body_store.hpp"
-#include "collision/parallel/division.hpp"
-#include "collision/parallel/domain.hpp"
 #include "tests/collision/parallel/changed_piles.hpp"
+#include "tests/collision/parallel/in_two.hpp"
 #include "tests/collision/parallel/piles.hpp"
 #include "tests/collision/parallel/ties.hpp"
 
@@ -12,8 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
-#include <numeric>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +19,7 @@ namespace {
 using Eigen::Vector3d;
 using tests::compare_piles;
 using tests::compare_runs;
+using tests::compare_seeds;
 using tests::compare_seeds_changed;
 using tests::Manner;
 using tests::PileMaker;
@@ -104,53 +101,20 @@ Seen run_in_all_manners(const Staging<certificates::PointMotion<2>>& scene, doub
   return seen;
 }
 
-/// Bodies as they are at a time, on a floor that is the first of them, in two domains, each of which knows all of them,
-/// or those that are near.
-class InTwo {
- public:
+/// Bodies on a floor that is the first of them, in two domains.
+struct InTwo : tests::InTwo<certificates::PointMotion<2>> {
   using Path = certificates::PointMotion<2>;
 
   static constexpr double now = 0.125;
 
-  InTwo(double halo, const std::vector<BodyDescription<2>>& bodies, bool know_all = true) : store_(options_, engine()) {
-    whole_.add_body(tests::fixed_body<2>(Box{{90, 9, 1}}, tests::motion<2>({0, 0, -1})));
-    for (const auto& body : bodies) whole_.add_body(body);
-    whole_.advance_to(now);
-    Team alone(nullptr);
-    std::vector<BodySlot> all(whole_.size());
-    std::iota(all.begin(), all.end(), BodySlot{0});
-    division_ = divide(engine().bodies(), {}, all, now, {.domains = 2}, 1, alone);
-    division_->halo = halo;
-    division_->window_end = now + 4;
-    std::array<std::vector<BodySlot>, 2> known;
-    std::vector<DomainIndex> knowers;
-    for (const BodySlot slot : all) {
-      const DomainIndex owner = assign_body(*division_, engine().bodies(), {}, slot, now, knowers);
-      if (know_all) knowers = {0, 1};
-      division_->note(slot, owner, knowers);
-      for (const DomainIndex domain : knowers) known[domain].push_back(slot);
-    }
-    engine().transfer().set_aside();
-    for (std::size_t i = 0; i < 2; ++i) {
-      domains_[i].emplace(options_, *division_, i, now, true, i == 0);
-      domains_[i]->exchange({}, known[i], store_, {});
-      domains_[i]->begin_window();
-    }
-  }
-
-  Domain<Path>& domain(std::size_t i) { return *domains_[i]; }
-  const BodyStore<Path>& store() const { return store_; }
-  /// How far a body is outside the cell of the first domain at the beginning.
-  double outside_first(BodyId id) { return outside(whole_.motion(id).position(now), division_->partition.cell(0)); }
-
- private:
-  Engine<Path>& engine() { return detail::EngineOf<Path>::of(whole_); }
-
-  WorldOptions options_ = tests::with_response(Response::elastic);
-  World<2> whole_{options_};
-  BodyStore<Path> store_;
-  std::optional<Division> division_;
-  std::array<std::optional<Domain<Path>>, 2> domains_;
+  InTwo(double halo, const std::vector<BodyDescription<2>>& bodies, bool know_all = true)
+      : tests::InTwo<Path>(
+            tests::with_response(Response::elastic),
+            [&](World<2>& world) {
+              world.add_body(tests::fixed_body<2>(Box{{90, 9, 1}}, tests::motion<2>({0, 0, -1})));
+              for (const auto& body : bodies) world.add_body(body);
+            },
+            now, halo, know_all) {}
 };
 
 /// Six balls in a row along x that have been pushed together, and slide.
@@ -254,8 +218,7 @@ TEST_CASE("Domain: a body that ceases to rest may leave the depth of its cell", 
 TEMPLATE_TEST_CASE_SIG("Domains: bodies that lean on each other have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_piles<Degree>(15, 20, 6, seen);
-  if (Degree == 2) compare_piles<Degree>(38, 1, 8, seen);
+  compare_piles<Degree>({{15, 20, 6}, {38, Degree == 2 ? 1u : 0u, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 5);
@@ -296,7 +259,8 @@ TEST_CASE("Domains: blocks of balls where four cells meet are struck from all si
 TEMPLATE_TEST_CASE_SIG("Domains: a listener that changes piles has the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  const std::uint64_t asked = compare_seeds_changed<Degree, PileMaker<Degree>>(1, Degree == 1 ? 40 : 12, seen);
+  const std::uint64_t asked =
+      compare_seeds_changed<Degree, PileMaker<Degree>>("KDS_CHANGED_PILE_SEEDS", {{1, Degree == 1 ? 40 : 12, 8}}, seen);
   INFO("changes " << asked << ", " << seen.text());
   CHECK(asked > 100);
   CHECK(seen.events > 2000);
@@ -306,7 +270,7 @@ TEMPLATE_TEST_CASE_SIG("Domains: a listener that changes piles has the events of
 
 TEST_CASE("Domains: bodies leave clusters before a span of these ends", "[parallel]") {
   Seen seen;
-  for (const std::uint64_t seed : {42u, 294u}) compare_seeds_changed<2, TieMaker<2>>(seed, 1, seen);
+  compare_seeds_changed<2, TieMaker<2>>("KDS_CHANGED_TIE_SEEDS", {{42}, {294}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.rests > 200);
@@ -314,11 +278,7 @@ TEST_CASE("Domains: bodies leave clusters before a span of these ends", "[parall
 
 TEST_CASE("Domains: rows and blocks on a lattice are struck at one time", "[parallel]") {
   Seen seen;
-  for (const std::uint64_t seed : {8u, 25u}) {
-    TieMaker<1> maker(seed);
-    const auto scene = maker.scene();
-    compare_runs(scene, maker.manner(8), seen);
-  }
+  compare_seeds<TieMaker<1>>("KDS_TIE_SEEDS", {{8}, {25}}, seen);
   INFO(seen.text());
   CHECK(seen.windows > 5);
   CHECK(seen.rests > 100);
@@ -326,11 +286,7 @@ TEST_CASE("Domains: rows and blocks on a lattice are struck at one time", "[para
 
 TEST_CASE("Domains: islands that their owners cannot know wholly come back from several processes", "[parallel]") {
   Seen seen;
-  for (const std::uint64_t seed : {17u, 24u}) {
-    TieMaker<2> maker(seed);
-    const auto scene = maker.scene();
-    compare_runs(scene, maker.manner(8), seen);
-  }
+  compare_seeds<TieMaker<2>>("KDS_TIE_SEEDS", {{17}, {24}}, seen);
   INFO(seen.text());
   CHECK(seen.whole > 5);
   CHECK(seen.rests > 50);

@@ -47,8 +47,7 @@ Seen run_in_all_manners(const Staging<Path<1>>& scene) {
 TEMPLATE_TEST_CASE_SIG("Domains and scripts, sensors, ignored pairs, timers: the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_stagings<Path<Degree>>(1, 30, 8, seen);
-  compare_stagings<Path<Degree>>(1001, 3, 150, seen);
+  compare_stagings<Path<Degree>>({{1, 30, 8}, {1001, 3, 150}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 2000);
   CHECK(seen.divided > 12);

@@ -48,7 +48,7 @@ Seen run_in_all_manners(const Staging<Path>& scene) {
 TEMPLATE_TEST_CASE_SIG("Domains: what rests on fixed bodies and walls has the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  compare_tables<Degree>(1, 60, 8, seen);
+  compare_tables<Degree>({{1, 60, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 5000);
   CHECK(seen.divided > 20);

@@ -69,8 +69,7 @@ TEMPLATE_TEST_CASE_SIG("Domains: how far a path leaves the chord between two of 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics to quintics have the events of one world", "[parallel]",
                        ((int Degree), Degree), 3, 4, 5) {
   Seen seen;
-  tests::compare_stagings<certificates::PointMotion<Degree>>(1, 16, 8, seen);
-  tests::compare_stagings<certificates::PointMotion<Degree>>(1001, 2, 100, seen);
+  tests::compare_stagings<certificates::PointMotion<Degree>>({{1, 16, 8}, {1001, 2, 100}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 1200);
   CHECK(seen.divided > 6);
@@ -81,7 +80,7 @@ TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics to quintics have the events 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics and quintics that respond by a law", "[parallel]",
                        ((int Degree), Degree), 3, 5) {
   Seen seen;
-  tests::compare_laws<certificates::PointMotion<Degree>>(1, 12, 8, seen);
+  tests::compare_laws<certificates::PointMotion<Degree>>({{1, 12, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 4);
@@ -90,7 +89,7 @@ TEMPLATE_TEST_CASE_SIG("Domains of bodies on cubics and quintics that respond by
 
 TEST_CASE("Domains: bodies on cubics that come to rest on floors have the events of one world", "[parallel]") {
   Seen seen;
-  tests::compare_tables<3>(1, 20, 8, seen);
+  tests::compare_tables<3>({{1, 20, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 3000);
   CHECK(seen.divided > 8);
@@ -100,8 +99,8 @@ TEST_CASE("Domains: bodies on cubics that come to rest on floors have the events
 
 TEST_CASE("Domains: bodies on cubics that lean on each other have the events of one world", "[parallel]") {
   Seen seen;
-  tests::compare_piles<3>(1, 8, 6, seen);
-  tests::compare_piles<3>(528, 1, 8, seen);  // one body reaches a wall for that another has, at the same instant
+  // In the last one body reaches a wall for that another has, at the same instant.
+  tests::compare_piles<3>({{1, 8, 6}, {528, 1, 8}}, seen);
   INFO(seen.text());
   CHECK(seen.windows > 5);
   CHECK(seen.rests > 50);

@@ -2,37 +2,39 @@
 #include "tests/collision/parallel/bending_stagings.hpp"
 #include "tests/collision/parallel/changed_piles.hpp"
 #include "tests/collision/parallel/contact_laws.hpp"
+#include "tests/collision/parallel/in_two.hpp"
+#include "tests/collision/parallel/runs_in_turns.hpp"
 #include "tests/collision/parallel/stagings.hpp"
 #include "tests/collision_turning/parallel/turning_piles.hpp"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 namespace kds::collision::test_turning_domains {
 namespace {
 
 using certificates::RigidMotion;
 using Eigen::Vector3d;
-using tests::compare_changed_by;
 using tests::compare_runs;
 using tests::compare_seeds;
 using tests::compare_stagings;
+using tests::InTwo;
 using tests::Manner;
 using tests::Random;
 using tests::Seen;
 using tests::TurningPileMaker;
+using tests::TurningRowMaker;
 
 }  // namespace
 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn have the events of one world", "[parallel]", ((int Degree), Degree),
                        1, 2) {
   Seen seen;
-  compare_stagings<RigidMotion<Degree>>(1, 24, 6, seen);
-  compare_stagings<RigidMotion<Degree>>(1001, 2, 100, seen);
+  compare_stagings<RigidMotion<Degree>>({{1, 24, 6}, {1001, 2, 100}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 8);
@@ -43,7 +45,7 @@ TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn have the events of one world
 TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn, and respond by a law, have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  tests::compare_laws<RigidMotion<Degree>>(1, 24, 6, seen);
+  tests::compare_laws<RigidMotion<Degree>>({{1, 24, 6}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 8);
@@ -53,11 +55,57 @@ TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn, and respond by a law, have 
 TEMPLATE_TEST_CASE_SIG("Domains of bodies that turn, and meshes that bend, have the events of one world", "[parallel]",
                        ((int Degree), Degree), 1, 2) {
   Seen seen;
-  tests::compare_bending_stagings<RigidMotion<Degree>>(1, 20, 6, seen);
+  tests::compare_bending_stagings<RigidMotion<Degree>>({{1, 20, 6}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 500);
   CHECK(seen.divided > 5);
   CHECK(seen.corrected > 3);
+}
+
+TEST_CASE("Domain: copies of bodies that turn and lean on owned ones count where these come out of the cell",
+          "[parallel]") {
+  // A row at rest, with the border in its middle, is struck at its left end, moves to a stop on the right, and back.
+  namespace rest = kds::tests::rest;
+  WorldOptions options = tests::with_response(Response::elastic);
+  options.shortest_flight = 0.03;
+  const auto fill = [](TurningWorld<2>& world) {
+    auto floor = rest::fixed(Box{{60, 60, 1}}, {0, 0, -1}), stop = rest::fixed(Box{{0.5, 3, 3}}, {5, 0, 3});
+    floor.friction = 0, stop.restitution = 1;
+    world.add_body(floor), world.add_body(stop);
+    for (int i = 0; i < 4; ++i) {
+      auto crate = rest::body(Box{{0.5, 0.5, 0.5}}, {i - 0.5, 0, 0.5});
+      crate.friction = 0, crate.inertia = 0.2, crate.restitution = 0.9;
+      world.add_body(crate);
+    }
+    auto stone = rest::body(Sphere{0.5}, {-6, 0, 0.55});
+    stone.motion[0].path.coefficients[1] = Vector3d(8, 0, 0), stone.restitution = 0.9, stone.mass = 8;
+    world.add_body(stone);
+  };
+  const double now = 0.375, until = 1.25;
+  InTwo<RigidMotion<2>> two(options, fill, now, 20);
+  TurningWorld<2> world(options);
+  fill(world);
+  world.advance_to(now);
+  const BodyId last = 5;
+  REQUIRE(rest::still(world, last));
+  const double begun = two.outside_first(last);
+  REQUIRE(begun > 1);
+  CHECK(two.domain(0).report().divisible);
+  CHECK(two.domain(0).report().begun_outside == Approx(begun));
+  double farthest = 0, final_place = 0;
+  for (int step = 1; step <= 64; ++step) {
+    world.advance_to(now + (until - now) * step / 64);
+    final_place = two.outside_first(world.motion(last).path.position(world.now()));
+    farthest = std::max(farthest, final_place);
+  }
+  REQUIRE(farthest > begun + 0.5);
+  REQUIRE(final_place < farthest - 0.125);
+  two.domain(0).run(until);
+  REQUIRE(two.domain(0).report().divisible);
+  CHECK(two.domain(0).report().overshoot >= farthest);
+
+  // What an island reaches out of the cell takes up the halo.
+  CHECK_FALSE(InTwo<RigidMotion<2>>(options, fill, now, begun + 1.8).domain(0).report().divisible);
 }
 
 TEST_CASE("Domains: rods that precess go from domain to domain", "[parallel]") {
@@ -130,23 +178,31 @@ TEST_CASE("Domains: rows of crates come to rest across borders and are struck", 
 
 TEST_CASE("Domains: piles of bodies that turn have the events of one world", "[parallel]") {
   Seen seen;
-  for (const std::uint64_t seed : {20u, 25u})
-    compare_seeds<TurningPileMaker>("KDS_TURNING_PILE_SEEDS", seed, 1, 8, seen);
+  compare_seeds<TurningPileMaker>("KDS_TURNING_PILE_SEEDS", {{20}, {25}}, seen);
   INFO(seen.text());
   CHECK(seen.events > 1000);
   CHECK(seen.corrected > 3);
   CHECK(seen.rests > 5);
 }
 
+TEST_CASE("Domains: rows of bodies that turn have the events of one world", "[parallel]") {
+  Seen seen;
+  compare_seeds<TurningRowMaker>("KDS_TURNING_ROW_SEEDS", {{1, 1}}, seen);
+  INFO(seen.text());
+  CHECK(seen.events > 100);
+}
+
+TEST_CASE("Domains: rows of bodies that turn go from one world to domains, to others, and back", "[parallel]") {
+  Seen seen;
+  tests::compare_seeds_in_turns<TurningRowMaker>("KDS_TURNING_TURN_SEEDS", {{1, 1}}, seen);
+  CHECK(seen.events > 100);
+}
+
 TEST_CASE("Domains: a listener that changes piles of bodies that turn has the events of one world", "[parallel]") {
   Seen seen;
-  std::uint64_t asked = 0;
   // In the second a script takes a body away from one that it was about to lie on, and that is known elsewhere.
-  for (const auto& [seed, domains] : {std::pair<std::uint64_t, std::size_t>(1, 8), {2127, 5}}) {
-    TurningPileMaker maker(seed);
-    const auto scene = maker.scene();
-    asked += compare_changed_by(scene, maker.manner(domains), seed, seen, tests::change_turning_pile);
-  }
+  const std::uint64_t asked = tests::compare_seeds_changed_by<TurningPileMaker>(
+      "KDS_TURNING_CHANGE_SEEDS", {{1}, {2127, 1, 5}}, seen, tests::change_turning_pile);
   INFO("changes " << asked << ", " << seen.text());
   CHECK(asked > 20);
   CHECK(seen.rests > 5);

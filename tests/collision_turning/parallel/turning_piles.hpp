@@ -48,20 +48,7 @@ class TurningPileMaker {
     const int more = random_.integer(0, 7);
     if (more < 2) add_lift(0.3 * width_);
     if (more == 2) add_lift(0.5);
-    const std::size_t owners = bodies_.size();
-    for (BodyId owner = 0; owner < owners; ++owner) {
-      if (!random_.one_in(25)) continue;
-      Description sensor{.shape = Sphere{1}, .sensor = true};
-      sensor.attached_to = owner;
-      bodies_.push_back(sensor);
-    }
-    const double timer = random_.one_in(3) ? random_.between(0, end_time_) : -1;
-    const auto fill = [bodies = bodies_, timer](BasicWorld<Motion>& world) {
-      for (const auto& description : bodies) world.add_body(description);
-      if (timer >= 0) world.set_timer(timer);
-    };
-    return {options, fill, end_time_,
-            "seed " + std::to_string(seed_) + ", " + std::to_string(bodies_.size()) + " bodies"};
+    return stage(random_, seed_, options, bodies_, 1, end_time_);
   }
 
   /// How it may be run, in so many domains at most.
@@ -215,6 +202,79 @@ inline void add_struck_crates(TurningWorld<2>& world) {
     for (int j = 0; j < 3; ++j) add({x, 4.0 * j, 0.5}, {0, 0, 0}, 0.2);
   }
 }
+
+/// Makes scenes of rows of crates that are pushed together, some with others on top, across places at which borders may
+/// be, and that are struck at their ends when they have come to rest, or before.
+class TurningRowMaker {
+  using Vector = Eigen::Vector3d;
+  using Motion = certificates::RigidMotion<2>;
+
+ public:
+  explicit TurningRowMaker(std::uint64_t seed) : random_(seed), seed_(seed) {
+    coarse_ = random_.one_in(4);
+    rebound_ = random_.one_in(3) ? 0 : random_.between(0, 0.5);
+    friction_ = random_.between(0.2, 0.8);
+    end_time_ = random_.between(0.3, 0.6);
+  }
+
+  Staging<Motion> scene() {
+    WorldOptions options = with_response(Response::elastic);
+    options.shortest_flight = std::array{0.015, 0.03}[random_.below(2)];
+    auto floor = kds::tests::rest::fixed(Box{{60, 60, 1}}, {0, 0, -1});
+    floor.friction = friction_;
+    if (random_.one_in(4)) {  // It begins to move, and stops.
+      for (const double speed : {0.5, 0.0}) {
+        Motion next = floor.motion.back().restarted(floor.motion.back().path.start + random_.between(0.2, 0.5));
+        next.path.coefficients[1] = Vector(speed, 0, 0);
+        floor.motion.push_back(next);
+      }
+    }
+    bodies_.push_back(floor);
+    for (int rows = random_.integer(2, 4), j = 0; j < rows; ++j) add_row(2.5 * j);
+    for (int more = random_.integer(0, 4); more > 0; --more) {
+      const double x = random_.between(-14, 14), y = random_.between(-3, 14);
+      add({x, y, 0.5}, Vector::Zero());
+    }
+    return stage(random_, seed_, options, bodies_, 1, end_time_);
+  }
+
+  /// How it may be run, in so many domains at most.
+  Manner manner(std::size_t most_domains) {
+    Manner manner = random_manner(random_, most_domains);
+    manner.parallel.halo = random_.between(1, 3.5);
+    return manner;
+  }
+
+ private:
+  void add(const Vector& place, const Vector& velocity) {
+    auto crate = kds::tests::rest::body(Box{{0.5, 0.5, 0.5}}, place);
+    if (random_.one_in(8)) crate.shape = Sphere{0.5};
+    crate.motion[0].path.coefficients[1] = velocity;
+    crate.restitution = rebound_, crate.friction = friction_, crate.rolling_friction = 0.1;
+    if (random_.one_in(2)) crate.inertia = 0.2;
+    if (random_.one_in(6)) crate.mass = random_.between(0.2, 5);
+    bodies_.push_back(crate);
+  }
+
+  void add_row(double y) {
+    const double gap = coarse_ ? 0 : 0.002, middle = coarse_ ? 0.5 * random_.integer(-4, 4) : random_.between(-4, 4);
+    const int crates = random_.integer(2, 5);
+    const auto place = [&](double k) { return middle + (1 + gap) * (k - 0.5 * (crates - 1)); };
+    for (int k = 0; k < crates; ++k) add({place(k), y, 0.5}, {-0.02 * (k - 0.5 * (crates - 1)), 0, 0});
+    if (random_.one_in(3)) add({place(random_.integer(0, crates - 2) + 0.5), y, 1.5 + gap / 2}, Vector::Zero());
+    for (int stones = random_.integer(0, 2); stones > 0; --stones) {
+      const double side = random_.one_in(2) ? 1 : -1, far = random_.between(1.25, 4), speed = random_.between(1, 6);
+      const double off = coarse_ ? 0 : random_.between(-0.4, 0.4), up = random_.between(0, 2);
+      add({middle + side * (0.5 * crates + far), y + off, 0.6}, {-side * speed, 0, up});
+    }
+  }
+
+  Random random_;
+  std::uint64_t seed_;
+  bool coarse_ = false;
+  double rebound_ = 0, friction_ = 0.5, end_time_ = 1;
+  std::vector<BasicBodyDescription<Motion>> bodies_;
+};
 
 /// What a listener does at the k-th event: a body comes, goes, jumps, or is struck; what it lies on moves; or
 /// properties change.
