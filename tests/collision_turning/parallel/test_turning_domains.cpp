@@ -92,14 +92,12 @@ TEST_CASE("Domain: copies of bodies that turn and lean on owned ones count where
   REQUIRE(begun > 1);
   CHECK(two.domain(0).report().divisible);
   CHECK(two.domain(0).report().begun_outside == Approx(begun));
-  double farthest = 0, final_place = 0;
+  double farthest = 0;
   for (int step = 1; step <= 64; ++step) {
     world.advance_to(now + (until - now) * step / 64);
-    final_place = two.outside_first(world.motion(last).path.position(world.now()));
-    farthest = std::max(farthest, final_place);
+    farthest = std::max(farthest, two.outside_first(world.motion(last).path.position(world.now())));
   }
   REQUIRE(farthest > begun + 0.5);
-  REQUIRE(final_place < farthest - 0.125);
   two.domain(0).run(until);
   REQUIRE(two.domain(0).report().divisible);
   CHECK(two.domain(0).report().overshoot >= farthest);
