@@ -272,7 +272,7 @@ TEST_CASE("what a belt carries wakes at a wall, and where another comes to lie",
   Log log;
   Turning world(options(), &log);
   world.add_body(moving(ground(), {1, 0, 0}));
-  const BodyId wall = world.add_body(fixed(Box{Vector3d(0.25, 5, 5)}, {4, 0, 5.5}));
+  const BodyId wall = world.add_body(fixed(Box{Vector3d(0.25, 5, 5)}, {4, 0, 5.125}));
   const BodyId first = world.add_body(body(Box{Vector3d::Constant(0.25)}, {0, 0, 0.3}));
   world.advance_to(2);
   CHECK(moves_at(world, first, {1, 0, 0}));

@@ -50,6 +50,7 @@ void TurningRest<Motion>::go_on_from(BodySlot slot, const Progress& progress,
 
 template <class Motion>
 void TurningRest<Motion>::let_go(BodySlot slot) {
+  blows_.forget(slot);
   if (slot >= of_.size()) return;
   while (!of_[slot].others.empty()) {
     const Key key = bodies_.in_order(slot, of_[slot].others.back());
@@ -63,6 +64,7 @@ template <class Motion>
 void TurningRest<Motion>::set_aside() {
   kept_.take(bodies_, *this, of_.size());
   pairs_.clear(), of_.clear();
+  blows_.become({});
   resting_ = 0;
 }
 
