@@ -59,7 +59,7 @@ TEMPLATE_TEST_CASE_SIG("failure times of clustered roots", "[failure_time]", FOR
 
 TEMPLATE_TEST_CASE_SIG("failure times of high degrees, those of extreme coefficients too", "[failure_time]",
                        ((int Degree), Degree), 11, 12, 16, 31) {
-  run<Degree>(800, 12, [](Random& random) {
+  run<Degree>(400, 12, [](Random& random) {
     check(random_motion<Degree>(random), random.between(-2, 2));
     std::array<double, Degree> roots;
     for (double& root : roots) root = random.integer(-2, 2);
